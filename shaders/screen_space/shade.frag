@@ -56,6 +56,7 @@ vec3 slopeHere(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
     vec3 ahead = surfaceAt(here + step_, a) - p, back = p - surfaceAt(here - step_, b);
     float near = 0.5 * radius;
     turn = 0.5;
+    if (min(da, db) > 8.0 * radius) return surfaceAt(here + step_, -p.z) - p;  // a pixel by itself: towards the eye
     if (da >= near || db >= near) return da < db ? ahead : back;
     float steep = 0.5 * (a - b) / pixel, length_ = pixel * (1.0 + steep * steep);
     turn = abs(a + b + 2.0 * p.z) / length_;

@@ -314,6 +314,26 @@ TEST_F(LookSurface, theSunGlintsAndNoPixelOfItIsAFirefly) {
     EXPECT_LT(brightest, 8.0F * 3.0F + 3.0F);  // what the glint may be at most, and what the water throws back
 }
 
+// Of specks of one or a few pixels no neighbour has a depth near theirs, but others further off have; what they look like is a number all the same.
+TEST_F(LookSurface, specksHaveFiniteLight) {
+    for (const float spacing : {0.02F, 0.03F, 0.04F}) {
+        TestParticles specks;
+        specks.spacing = spacing;
+        TestRandom random;
+        for (int k = 0; k < 3000; ++k) {
+            specks.add(vec3(0.9F, 0.5F, 0.001F) * random.inCube());
+            specks.position.back().w = 0.58F + 0.08F * random.inCube().x;  // nearly all of it has become droplets
+        }
+        draw(specks);
+        size_t shown = 0;
+        for (size_t i = 0; i < radiance.size(); ++i) {
+            shown += depth[i] < kNothing ? 1 : 0;
+            ASSERT_TRUE(std::isfinite(radiance[i].x + radiance[i].y + radiance[i].z)) << spacing << " " << i;
+        }
+        EXPECT_GT(shown, 100U) << spacing;
+    }
+}
+
 // Water of 10 layers, jittered, within a distance function (m, negative inside).
 template <class Distance>
 TestParticles filled(const vec3& low, const vec3& high, float spacing, Distance distance) {

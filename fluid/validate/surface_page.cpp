@@ -144,7 +144,8 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
         "dominate the means, not the medians. Overlap is that of the silhouettes of the body of the water, and in brackets of body and "
         "spray: pixels in both over pixels in either, of those that are covered at least by half (1 is best). In place of a particle's "
         "droplets the reference of the latter has a ball. FLIP is the difference of the pictures (0 to 1); both have the same light, "
-        "shadows, caustics, reflections and spray.\n\n"
+        "shadows and spray, at quality fine the same reflections and caustics too (fast: no reflections of the scene, coarser "
+        "caustics).\n\n"
         "| filter | quality | frame, ms | water, ms | normals, mean, deg | median | depth, median, radii | rms | overlap | FLIP |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
         chart.particles);

@@ -22,7 +22,8 @@ constexpr std::string_view kSoft = "the water is compressed by 2 % under its wei
 // Seen in the pictures of `rivulet validate surface --pictures`.
 constexpr std::string_view kSheets = "sheets of one particle and the spray along the far wall have normals of their own particles";
 constexpr std::string_view kOutline = "water of less than 0.3 spacings is not covered: along the edges of the box, and where it thins out";
-constexpr std::string_view kFast = "quality fast: a surface at half the resolution, half of the particles' thickness, no mirrored scene, coarser light";
+constexpr std::string_view kFast =
+    "quality fast: a surface at half the resolution, half of the particles' thickness, no mirrored scene, coarser light";
 
 constexpr KnownMiss kKnownMisses[] = {
     {"surface", "narrow_range", "dam break, fine: normals, mean", kSheets},

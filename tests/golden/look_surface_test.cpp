@@ -314,7 +314,8 @@ TEST_F(LookSurface, theSunGlintsAndNoPixelOfItIsAFirefly) {
     EXPECT_LT(brightest, 8.0F * 3.0F + 3.0F);  // what the glint may be at most, and what the water throws back
 }
 
-// Of specks of one or a few pixels no neighbour has a depth near theirs, but others further off have; what they look like is a number all the same.
+// Of specks of one or a few pixels no neighbour has a depth near theirs, but others further off have; what they look like is a number all
+// the same.
 TEST_F(LookSurface, specksHaveFiniteLight) {
     for (const float spacing : {0.02F, 0.03F, 0.04F}) {
         TestParticles specks;

@@ -1,6 +1,7 @@
 // The wetness of solids: at the end of a frame the surface that water touches becomes wet, water runs down it, and the rest dries.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -38,7 +39,8 @@ class WetPasses {
     Device* device_ = nullptr;
     std::shared_ptr<const WetSurface> surface_;
     Kernel kernel_;
-    Buffer points_, cells_, wet_[2];
+    Buffer points_, cells_;
+    std::array<Buffer, 2> wet_;
     int now_ = 0;
 };
 

@@ -118,7 +118,7 @@ void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world) {
     wetNodes(world.wetness().surface.get());
 }
 
-// Sets Node::wet of each node whose solid can be wet. Null: all nodes are dry.
+// Tells each node where its wetness is stored (Node::wet). `surface` is null if the world has no wetness: then no node has any.
 void SceneSolids::wetNodes(const WetSurface* surface) {
     for (size_t n = 0; n < nodes_.nodes().size(); ++n) {
         Node& node = nodes_.nodes()[n];

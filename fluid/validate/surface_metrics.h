@@ -17,8 +17,9 @@ struct SurfaceMap {
     bool there(size_t i) const { return depth[i] < 1.0e5F; }
 };
 
-// Normals from depths: the central difference where the surface continues on both sides, else the side whose depth changes less. The shade
-// pass has rules for creases and outlines besides. `radius`: m, of a drawn particle.
+// Computes the normals of a surface from its depths: the central difference of the points to both sides of a pixel, or, where the surface
+// ends on one side, the difference to the other side. The renderer treats creases and outlines in a better way (slope() in shade.frag),
+// which this does not. `radius`: m, of a drawn particle.
 void fillNormals(SurfaceMap& map, const FrameView& view, float radius);
 
 struct SurfaceErrors {

@@ -14,16 +14,8 @@ namespace {
 constexpr int kSide = 256;
 
 // Water in a box of 1 m, as a map along light from above, over a floor.
-class LookCaustics : public LookTest {
+class LookCaustics : public LookPassesTest {
   protected:
-    void SetUp() override {
-        LookTest::SetUp();
-        if (IsSkipped()) return;
-        Result<FluidPrograms> made = FluidPrograms::create(ShaderFiles::developer());
-        ASSERT_TRUE(made) << made.error().message;
-        programs = std::move(*made);
-    }
-
     // `thickness`: m, by the distance (m) from the middle; its underside is level, at y = 0. Sets `light`: rgb of each texel.
     template <class Thickness>
     void shine(const Thickness& thickness, float floorHeight) {
@@ -65,8 +57,6 @@ class LookCaustics : public LookTest {
     }
     const vec4& at(int x, int y) const { return light[static_cast<size_t>(y) * kSide + static_cast<size_t>(x)]; }
 
-    FluidPrograms programs;
-    gpu::TransientPool pool;
     vec3 absorption{0.0F};
     float texel = 0.0F;  // m
     std::vector<vec4> light;

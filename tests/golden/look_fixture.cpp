@@ -106,6 +106,14 @@ void LookTest::compareWith(const std::string& name, int width, int height, const
                                 << "_now.png in the temporary folder; if it is better, RIVULET_UPDATE_GOLDEN=1";
 }
 
+void LookPassesTest::SetUp() {
+    LookTest::SetUp();
+    if (IsSkipped()) return;
+    Result<FluidPrograms> made = FluidPrograms::create(ShaderFiles::developer());
+    ASSERT_TRUE(made) << made.error().message;
+    programs = std::move(*made);
+}
+
 double meanAbsoluteError(std::span<const uint8_t> a, std::span<const uint8_t> b) {
     if (a.size() != b.size() || a.empty()) return 255;
     double sum = 0;

@@ -9,6 +9,7 @@
 
 #include "engine/app/context_egl.h"
 #include "engine/gpu/debug.h"
+#include "fluid/render/renderers.h"
 #include "fluid/session/scene_renderer.h"
 
 namespace rivulet {
@@ -47,6 +48,15 @@ class LookTest : public ::testing::Test {
     static std::unique_ptr<SceneRenderer> renderer_;
     gpu::Buffer position_, velocity_, id_;
     std::array<gpu::Buffer, 3> ellipsoids_;
+};
+
+// The same with the programs of the fluid's passes, for tests that add passes themselves.
+class LookPassesTest : public LookTest {
+  protected:
+    void SetUp() override;
+
+    FluidPrograms programs;
+    gpu::TransientPool pool;
 };
 
 // 0..255 a channel.

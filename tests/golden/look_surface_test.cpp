@@ -15,14 +15,10 @@ namespace {
 constexpr float kNothing = 1.0e6F;
 
 // The surface's depth (m), bottom row first, as the screen-space renderer finds it in an empty scene.
-class LookSurface : public LookTest {
+class LookSurface : public LookPassesTest {
   protected:
     void SetUp() override {
-        LookTest::SetUp();
-        if (IsSkipped()) return;
-        Result<FluidPrograms> made = FluidPrograms::create(ShaderFiles::developer());
-        ASSERT_TRUE(made) << made.error().message;
-        programs = std::move(*made);
+        LookPassesTest::SetUp();
         camera.position = vec3(0.0F, 0.0F, 2.0F);
         camera.target = vec3(0.0F);
         camera.nearPlane = 0.1F;
@@ -80,8 +76,6 @@ class LookSurface : public LookTest {
     int width = 320, height = 180;
     std::string filter = "narrow_range";
     Bounds bounds;
-    FluidPrograms programs;
-    gpu::TransientPool pool;
     Camera camera;
     FrameParams frame{};
     std::vector<float> depth;

@@ -137,6 +137,7 @@ void FluidPrograms::drawQuads(gpu::Program& program, const RowRange& range, std:
     const uint32_t count = range.count;
     if (count == 0) return;
     bindRows(program, range, rows);
+    program.set("pointTarget", vec2(0.0F));
     quads.bind();
     const uint32_t instances = (count + kQuadRows - 1) / kQuadRows, quadsEach = instances > 1 ? kQuadRows : count;
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * quadsEach), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
@@ -155,10 +156,15 @@ void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid,
     drawQuads(program, range, rowsOf(program, fluid));
 }
 
-void FluidPrograms::drawPoints(gpu::Program& program, const FluidView& fluid, const RowRange& range) {
+void FluidPrograms::drawSplats(gpu::Program& program, const FluidView& fluid, const Splats& splats, const RowRange& range) {
     if (range.count == 0) return;
+    if (!(splats.largest <= largestPoint)) {
+        drawParticles(program, fluid, range);
+        return;
+    }
     const std::array<QuadRows, 7> rows = rowsOf(program, fluid);
     bindRows(program, range, rows);
+    program.set("pointTarget", splats.target);
     none.bind();
     glEnable(GL_PROGRAM_POINT_SIZE);
     glDrawArrays(GL_POINTS, static_cast<GLint>(range.first), static_cast<GLsizei>(range.count));

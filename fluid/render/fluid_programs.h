@@ -37,6 +37,12 @@ struct RowRange {
     uint32_t first = 0, count = 0;
 };
 
+// How large particles are in the picture that they are drawn into.
+struct Splats {
+    vec2 target = vec2(0.0F);  // pixels of that picture
+    float largest = 0;         // pixels, a bound on the diameter; infinite: none is known
+};
+
 struct FilterRow;  // fluid/render/filters.h
 struct MarchedReference;
 
@@ -65,8 +71,9 @@ struct FluidPrograms {
     void drawQuads(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows);
     // The same for particles. The vertex shader includes particle.glsl.
     void drawParticles(gpu::Program& program, const FluidView& fluid, const RowRange& range);
-    // As points: a quarter of the vertices. The vertex shader is compiled with POINTS and sets gl_PointSize, at most largestPoint.
-    void drawPoints(gpu::Program& program, const FluidView& fluid, const RowRange& range);
+    // The same as points, a quarter of the vertices, where none is larger than a point may be. The vertex shader uses splatQuad(), or sets
+    // gl_PointSize if asPoint().
+    void drawSplats(gpu::Program& program, const FluidView& fluid, const Splats& splats, const RowRange& range);
     // What both begin with: binds the buffers, says which rows are drawn.
     void bindRows(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows);
     // Draws the marked tiles with the program in use. Its vertex shader is tile.vert; the mask is bound to `unit`.

@@ -1,5 +1,9 @@
 #include "fluid/render/renderers.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace rivulet {
 
 // One a renderer, in the file that draws it.
@@ -8,7 +12,8 @@ RendererRow screenSpaceRenderer();
 RendererRow referenceRenderer();
 
 namespace {
-constexpr int kTilePixels = 32;  // pixels
+constexpr int kTilePixels = 32;      // pixels
+constexpr float kLongest = 4.0F;     // radii, of what is drawn: kOverlap of particle.glsl, times an ellipsoid's longest half axis (2.6)
 }  // namespace
 
 const Table<RendererRow>& renderers() {
@@ -26,6 +31,23 @@ std::vector<gpu::Read> splatReads(const FluidDraw& d) {
 
 // Ids decide which particles represent others.
 float detailOf(const FluidDraw& d) { return d.fluid.id != 0 ? d.look.detail : 0.0F; }
+
+Splats splatsOf(const FluidDraw& d, float radius, int scale) {
+    const vec2 target((d.view.width + scale - 1) / scale, (d.view.height + scale - 1) / scale);
+    float nearest = std::numeric_limits<float>::infinity();
+    const Bounds& b = d.fluid.bounds;
+    for (int k = 0; k < 8 && !b.empty(); ++k) {
+        const vec3 corner((k & 1) != 0 ? b.max.x : b.min.x, (k & 2) != 0 ? b.max.y : b.min.y, (k & 4) != 0 ? b.max.z : b.min.z);
+        nearest = std::min(nearest, -(d.view.view * vec4(corner, 1.0F)).z);
+    }
+    nearest -= kLongest * radius;
+    if (b.empty() || !(nearest > d.view.nearPlane)) return {target, std::numeric_limits<float>::infinity()};
+    // Off the axis of the picture, a sphere's image is longer by the ray's length over its depth.
+    const mat4& p = d.view.projection;
+    const float x = (1.0F + std::abs(p[2][0])) / p[0][0], y = (1.0F + std::abs(p[2][1])) / p[1][1];
+    const float pixels = std::max(p[0][0] * target.x, p[1][1] * target.y);  // of 2 m at a depth of 1 m
+    return {target, kLongest * radius * std::sqrt(1.0F + x * x + y * y) * pixels / nearest};
+}
 
 void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle from, gpu::TextureHandle to,
                 const std::function<void()>& done) {

@@ -64,6 +64,8 @@ gpu::TextureHandle addCaustics(gpu::FrameGraph& graph, FluidPrograms& programs, 
 std::vector<gpu::Read> splatReads(const FluidDraw& draw);
 // Pixels, for particle.glsl; 0: every particle is drawn.
 float detailOf(const FluidDraw& draw);
+// How large the particles of a draw are in a picture of 1 / `scale` of its resolution; `radius` m.
+Splats splatsOf(const FluidDraw& draw, float radius, int scale);
 
 // Copies a texture to one of the same size and format, and then calls `done` where there is one.
 void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle from, gpu::TextureHandle to,

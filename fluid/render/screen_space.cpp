@@ -28,6 +28,7 @@ constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
 constexpr int kShaftSteps = 24, kShaftStepsFast = 8;
 constexpr float kLeastDisc = 1.75F;  // texels, radius
+constexpr float kManyShare = 2.5F;   // times that larger than a particle's, discs are so many that each second one will do
 
 constexpr ProgramRow kScreenSpacePrograms[] = {
     {"occluder", "screen_space/occluder.vert", "render/depth.frag"},
@@ -46,7 +47,6 @@ constexpr ProgramRow kScreenSpacePrograms[] = {
     {"show view", "screen_space/tile.vert", "screen_space/show_view.frag"},
     {"blur", "screen_space/tile.vert", "screen_space/blur.frag"},
     {"light water", "screen_space/light_water.vert", "screen_space/light_water.frag"},
-    {"light water, points", "screen_space/light_water.vert", "screen_space/light_water.frag", {"POINTS"}},
     {"light water blur, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"FIRST"}},
     {"light water blur, last", "render/fullscreen.vert", "screen_space/light_water_blur.frag"},
     {"light water blur, wide, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"FIRST", "WIDE"}},
@@ -124,6 +124,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
             useFrame(c, d);
             if (clears) target.clearColour(vec4(kNoDepth));
             target.clearDepth();
+            const Splats splats = splatsOf(d, d.fluid.radius, 1);
             if (prepare) {
                 glEnable(GL_DEPTH_TEST);
                 glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -131,7 +132,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
                 occluder.use();
                 occluder.set("radius", d.fluid.radius);
                 occluder.set("detail", detailOf(d));
-                for (const RowRange& range : rows) programs.drawParticles(occluder, d.fluid, range);
+                for (const RowRange& range : rows) programs.drawSplats(occluder, d.fluid, splats, range);
                 glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
                 glDepthMask(GL_FALSE);
             }
@@ -141,7 +142,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
             p.use();
             p.set("radius", d.fluid.radius);
             p.set("detail", detailOf(d));
-            for (const RowRange& range : rows) programs.drawParticles(p, d.fluid, range);
+            for (const RowRange& range : rows) programs.drawSplats(p, d.fluid, splats, range);
             if (done) done();
         });
     };
@@ -284,7 +285,8 @@ void addThicknessOf(FrameGraph& graph, FluidPrograms& programs, const FluidDraw&
         p.set("spacing", d.fluid.spacing);
         p.set("scale", thicknessSize(d).scale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
-        for (const RowRange& range : to.rows) programs.drawParticles(p, d.fluid, range);
+        const Splats splats = splatsOf(d, d.fluid.radius * some.larger, thicknessSize(d).scale);
+        for (const RowRange& range : to.rows) programs.drawSplats(p, d.fluid, splats, range);
         if (to.condition) glEndConditionalRender();
     });
 }
@@ -413,8 +415,10 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc raw{.width = side, .height = side, .format = Format::rg32f};  // for slopes of depths
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba32f};
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    // The blur hides the larger radius of half the particles, but refraction would show that their number varies from place to place.
-    const Drawn some = d.look.caustics ? allOf(d.fluid) : drawnOf(d);
+    // The blur hides the larger radius of half the particles, but refraction would show that their number varies from place to place, unless
+    // hundreds of them share a texel.
+    const float texelRadius = clipRadius * 0.5F * static_cast<float>(side);
+    const Drawn some = d.look.caustics && texelRadius * kManyShare > kLeastDisc ? allOf(d.fluid) : drawnOf(d);
     Kept kept;
     if (d.fluid.sleepers && d.fluid.asleep > 0) {
         KeptPictures::Key key{d.fluid.sleepers, nullptr, {static_cast<float>(side), d.fluid.radius, d.fluid.spacing, some.standsFor}};
@@ -422,7 +426,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         kept = programs.kept.find(key, std::array{KeptPictures::Wanted(KeptPicture::light, raw)});
     }
     // Of a disc of less texels, their centres would see too much or too little, depending on where it lies. The volume stays.
-    const float wider = std::max(kLeastDisc / (some.larger * clipRadius * 0.5F * static_cast<float>(side)), 1.0F);
+    const float wider = std::max(kLeastDisc / (some.larger * texelRadius), 1.0F);
     const auto draw = [&](TextureHandle into, const std::array<RowRange, 2>& rows, bool clears, const std::function<void()>& done) {
         graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {into}, [=, &programs](PassContext& c) {
             const gpu::Framebuffer& target = c.drawTo({into});
@@ -430,15 +434,14 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
             useFrame(c, d);
             glEnable(GL_BLEND);
             glBlendFunc(GL_ONE, GL_ONE);
-            // As points, a quarter of the vertices; a disc larger than a point may be is a quad.
-            const float texelRadius = wider * some.larger * clipRadius * 0.5F * static_cast<float>(side);
-            const bool points = 2 * texelRadius <= programs.largestPoint;
-            Program& p = programs[points ? "light water, points" : "light water"];
+            Program& p = programs["light water"];
             p.use();
-            p.set("clipRadius", points ? texelRadius : wider * some.larger * clipRadius);
+            const float radius = wider * some.larger * clipRadius;
+            p.set("clipRadius", radius);
             p.set("radius", some.larger * d.fluid.radius / (wider * wider));
             p.set("volumeScale", volumeScale(d.fluid));
-            for (const RowRange& range : rows) points ? programs.drawPoints(p, d.fluid, range) : programs.drawParticles(p, d.fluid, range);
+            const Splats splats{.target = vec2(side, side), .largest = radius * static_cast<float>(side)};
+            for (const RowRange& range : rows) programs.drawSplats(p, d.fluid, splats, range);
             if (done) done();
         });
     };

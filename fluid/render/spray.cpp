@@ -7,6 +7,7 @@ namespace {
 // m: particles of this spacing and less are drops, which tension holds together; of the other and more, spray of finer drops (the capillary
 // length of water is 2.7 mm, and drops of 5 mm break in the air: Villermaux and Bossa 2009).
 constexpr float kDrops = 0.002F, kSpray = 0.008F;
+constexpr float kLongestPath = 0.1F;  // of the picture's height: half the longest path during the exposure that is drawn
 }  // namespace
 
 void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
@@ -42,7 +43,11 @@ void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
-        programs.drawParticles(p, d.fluid, rows);
+        Splats splats = splatsOf(d, d.fluid.radius, 1);
+        const float longest = kLongestPath * splats.target.y;
+        p.set("longest", longest);
+        splats.largest += 3.0F * longest;
+        programs.drawSplats(p, d.fluid, splats, rows);
     });
 }
 

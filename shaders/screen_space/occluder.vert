@@ -13,6 +13,13 @@ void main() {
     float inner = drawnRadius(particle);
 #endif
     inner *= 1.0 - leaving(particle);
-    c.xy += (corner() - 0.5) * 1.40 * inner;  // half the side: 0.70 radii < 1 / sqrt(2)
+    float side = 1.40 * inner;  // half of it: 0.70 radii < 1 / sqrt(2)
+    if (asPoint()) {
+        float pixels = side * min(frame.projection[0][0] * pointTarget.x, frame.projection[1][1] * pointTarget.y) * 0.5 / -c.z;
+        gl_PointSize = max(pixels - 1.0, 1.0);  // rounded down, however the GPU rounds
+        if (pixels < 2.0) inner = 0.0;
+    } else {
+        c.xy += (corner() - 0.5) * side;
+    }
     gl_Position = lost(particle) || inner <= 0.0 || -c.z < frame.planes.x * 1.01 ? kNowhere : frame.projection * vec4(c, 1.0);
 }

@@ -40,7 +40,11 @@ float representedBy(vec4 p, uint id) {
     float mean = share + past * (1.0 - (end + share) * 0.5 * (1.0 - kFades) / share) / kFades;
     return clamp((1.0 - at) / kFades, 0.0, 1.0) / mean;
 }
+#if defined(ALL_DRAWN)
+const float represents = 1.0;
+#else
 float represents = detail > 0.0 ? representedBy(particle, texelFetch(ids, row()).r) : 1.0;
+#endif
 float drawnRadius(vec4 p) { return ownRadius(p) * sqrt(represents); }
 // Also for NaN, for a free slot and for a body sample.
 bool lost(vec4 p) { return beyond() || p.w < 0.0 || represents <= 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
@@ -75,7 +79,19 @@ vec2 tangents(float c, float depth, float cc, float cz, float zz) {
     return vec2(-b - t, -b + t) / a;
 }
 
+// Clip position of a point that covers the rectangle of the slopes `low` to `high` at `depth`, m. It covers what of it is within the picture: a
+// point whose centre lies outside is not drawn.
+vec4 pointOver(vec2 low, vec2 high, float depth) {
+    vec4 a = frame.projection * vec4(low * depth, -depth, 1.0), b = frame.projection * vec4(high * depth, -depth, 1.0);
+    vec2 from = max(min(a.xy, b.xy) / a.w, vec2(-1.0)), to = min(max(a.xy, b.xy) / a.w, vec2(1.0));
+    if (from.x >= to.x || from.y >= to.y) return kNowhere;
+    vec2 pixels = (to - from) * 0.5 * pointTarget;
+    gl_PointSize = max(pixels.x, pixels.y) + 1.0;  // rounded up, however the GPU rounds
+    return vec4((from + to) * 0.5 * a.w, a.zw);
+}
+
 // Clip position of this vertex of a quad around it, in the plane through its nearest point; of one that the near plane cuts, in that plane.
+// Or that of a point.
 vec4 splatQuad(Splat s) {
     float depth = -s.centre.z, ahead = sqrt(s.squares[2][2]), near = frame.planes.x * 1.001;
     if (!(depth + ahead > near)) return kNowhere;
@@ -92,5 +108,6 @@ vec4 splatQuad(Splat s) {
         high = max(b / near, b / (depth + ahead));
         front = near;
     }
+    if (asPoint()) return pointOver(low, high, front);
     return frame.projection * vec4(mix(low, high, corner()) * front, -front, 1.0);
 }

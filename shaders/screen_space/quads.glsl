@@ -1,12 +1,11 @@
 // Quads, one per row of buffers, drawn by FluidPrograms::drawQuads: four vertices per row, and kRows rows per instance.
 // One instance per quad was three times slower on llvmpipe, and leaves most of a wave idle on a GPU.
+// Or squares, by FluidPrograms::drawPoints: one vertex per row.
 uniform uint firstRow, rows;  // the first that is drawn, and the end
+uniform vec2 pointTarget;     // pixels of the target; x 0: quads are drawn, not points
 const uint kRows = 4096u;
-#if defined(POINTS)
-uint wanted() { return uint(gl_VertexID); }  // FluidPrograms::drawPoints: a vertex per row
-#else
-uint wanted() { return firstRow + uint(gl_InstanceID) * kRows + uint(gl_VertexID >> 2); }
-#endif
+bool asPoint() { return pointTarget.x > 0.0; }
+uint wanted() { return asPoint() ? uint(gl_VertexID) : firstRow + uint(gl_InstanceID) * kRows + uint(gl_VertexID >> 2); }
 int row() { return int(min(wanted(), rows - 1u)); }
 bool beyond() { return wanted() >= rows; }  // no such row: nothing is drawn
 vec2 corner() { return vec2(float(gl_VertexID & 1), float((gl_VertexID >> 1) & 1)); }

@@ -19,42 +19,45 @@ flat in vec3 centreView;
 flat in vec3 alongView;
 flat in float haze;
 flat in vec2 reach;
-in vec2 place;
 layout(location = 0) out vec4 colour;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     float depth = -centreView.z, pixel = depth * frame.ray.x;
+    vec3 toEye = -normalize(centreView), across = cross(toEye, alongView), ray = viewRay(gl_FragCoord.xy);
+    vec3 off_ = ray * (dot(centreView, toEye) / dot(ray, toEye)) - centreView;
+    vec2 place = vec2(dot(off_, alongView), dot(off_, across));  // m, along the path and across
     // Within half a spacing of what hides it, it fades.
     float hider = min(depthOfWindow(texelFetch(sceneDepth, here, 0).r), texelFetch(waterDepth, here, 0).r);
     float there = smoothstep(-0.25 * spacing, 0.25 * spacing, hider - depth);
     if (there <= 0.0) discard;
-    float open = 1.0, nearest = 1.0, radius = 1.0, bright = 0.0;
-    vec2 outwards = vec2(0.0);
+    float open = 1.0, deepest = 0.0, away = 1.0, radius = 1.0, bright = 0.0, perEdge = 1.0 / (1.4 * pixel);
+    vec2 outwards = vec2(0.0);  // m
     for (int k = 0; k < kDroplets; ++k) {
         vec4 drop = droplet[k];
         vec2 off = place - drop.xy;
-        off = vec2(sign(off.x) * max(abs(off.x) - drop.z, 0.0), off.y) / drop.w;
-        float d = length(off), soft = pixel / drop.w;
-        if (d < nearest) {
-            nearest = d;
+        off.x -= clamp(off.x, -drop.z, drop.z);
+        float d = length(off), outside = d - drop.w, edge = clamp(0.5 + outside * perEdge, 0.0, 1.0);
+        if (outside < deepest) {
+            deepest = outside;
             outwards = off;
+            away = d;
             bright = share[k];
             radius = drop.w;
         }
-        open *= 1.0 - share[k] * (1.0 - smoothstep(1.0 - 0.7 * soft, 1.0 + 0.7 * soft, d));
+        open *= 1.0 - share[k] * (1.0 - edge * edge * (3.0 - 2.0 * edge));
     }
     float near = max(1.0 - dot(place / reach, place / reach), 0.0), mist = haze * near * near;
     float cover = 1.0 - open, all = 1.0 - open * (1.0 - mist);
     if (all < 0.002) discard;
 
-    vec3 toEye = -normalize(centreView), across = cross(toEye, alongView);
-    float d = min(nearest, 0.98), nv = sqrt(1.0 - d * d);
-    vec3 side = alongView * outwards.x + across * outwards.y;
-    vec3 n = normalize(side * (d / max(nearest, 1.0e-4)) + toEye * nv);
+    float d = min(away / radius, 0.98), nv = sqrt(1.0 - d * d);  // sine and cosine of the angle between the normal and the ray
+    vec3 side = (alongView * outwards.x + across * outwards.y) / max(away, 1.0e-9);
+    vec3 n = side * d + toEye * nv;
     // A sphere refracts a ray twice by the same angle, towards its centre: what is behind appears upside down.
-    float turn = 2.0 * (asin(d) - asin(d / refractiveIndex));
-    vec3 bent = -toEye * cos(turn) - (nearest > 1.0e-4 ? side / nearest : vec3(0.0)) * sin(turn);
+    float inner = d / refractiveIndex, innerCos = sqrt(1.0 - inner * inner);
+    float once = d * innerCos - nv * inner;  // the sine of that angle
+    vec3 bent = -toEye * (1.0 - 2.0 * once * once) - side * (2.0 * once * sqrt(1.0 - once * once));
     vec2 uv = clamp(pixelOf(centreView + bent * (4.0 * spacing)) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
     vec2 inside = (1.0 - smoothstep(vec2(0.45), vec2(0.5), abs(uv - 0.5)));
     // A drop shows all that is around it, and little of what is close behind; what is in front of it is not seen in it.
@@ -70,9 +73,9 @@ void main() {
     vec4 own = ownAbsorption;
 #endif
     float length_ = 1.33 * radius;
-    vec3 passed = exp(-(own.rgb + own.w) * length_), thrown = vec3(1.0 - exp(-own.w * length_)) * exp(-own.rgb * length_);
-    float base = (refractiveIndex - 1.0) / (refractiveIndex + 1.0);
-    float mirror = mix(base * base, 1.0, pow(1.0 - nv, 5.0));  // Schlick 1994
+    vec3 left = exp(-own.rgb * length_), passed = left * exp(-own.w * length_), thrown = left - passed;
+    float base = (refractiveIndex - 1.0) / (refractiveIndex + 1.0), flat_ = 1.0 - nv, flat2 = flat_ * flat_;
+    float mirror = mix(base * base, 1.0, flat2 * flat2 * flat_);  // Schlick 1994
     vec3 mirrored = environment(directionToWorld(reflect(-toEye, n)), 0.2);
     vec3 half_ = normalize(toEye + transpose(mat3(frame.inverseView)) * frame.lightDir.xyz);
     // A highlight is drawn out along the path, and only of a drop of several pixels is it a spot of its own.

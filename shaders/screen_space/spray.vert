@@ -10,15 +10,16 @@ uniform vec4 ownAbsorption;  // 1/m; w: scattering
 uniform float spacing;     // m
 uniform float split;       // 0: one drop; 1: droplets and mist
 uniform float shutter;     // s, exposure time; 0: there are no velocities
+uniform float longest;     // pixels, half the longest path that is drawn
 uniform bool named;        // there are ids
 const int kDroplets = 7;
+const float kSeen = 0.9;   // of the mist's reach: beyond, its opacity is less than 0.0025
 flat out vec4 droplet[kDroplets];  // m: along the path, across, half the path, radius as drawn; 0: not there
 flat out float share[kDroplets];   // opacity
 flat out vec3 centreView;          // m
 flat out vec3 alongView;           // unit, perpendicular to the line of sight
 flat out float haze;               // opacity of what is finer, at the centre
 flat out vec2 reach;               // m, of that
-out vec2 place;                    // m, along the path and across
 
 // PCG (Jarzynski and Olano 2020): three numbers, 0 to 1, that stay with the droplet.
 vec3 chosen(uvec3 v) {
@@ -37,7 +38,7 @@ void main() {
     if (shutter > 0.0) v = mat3(frame.view) * texelFetch(velocities, row()).xyz;
     float depth = -c.z, pixel = depth * frame.ray.x;
     vec3 toEye = -normalize(c), seen = v - toEye * dot(v, toEye);
-    float speed = length(seen);
+    float speed = length(seen), path = min(0.5 * speed * shutter, longest * pixel);  // m, half of it
     vec3 along = speed > 1.0e-6 ? seen / speed : normalize(cross(toEye, vec3(0.31, 0.95, 0.0))), across = cross(toEye, along);
     float far_ = 0.0, wide = 0.0;
     uint id = named ? texelFetch(ids, row()).r : uint(row());
@@ -47,7 +48,7 @@ void main() {
         vec3 way = mat3(frame.view) * vec3(sqrt(1.0 - up * up) * vec2(cos(turn), sin(turn)), up).xzy * (pow(h.z, 0.3333) * spacing * split * mix(0.2, 1.1, gone));
         // Few are large, most are small.
         float radius = spacing * (k == 0 ? mix(0.62, 0.30, split) : split * mix(0.09, 0.22, g.x * g.x)) * smoothstep(0.0, 0.5, gone);
-        float half_ = 0.5 * speed * shutter * mix(0.8, 1.2, g.y), drawn = max(radius, 0.6 * pixel);
+        float half_ = path * mix(0.8, 1.2, g.y), drawn = max(radius, 0.6 * pixel);
         droplet[k] = vec4(dot(way, along), dot(way, across), half_, drawn);
         // The share of the exposure that it spends at a point; one smaller than a pixel covers a part of it.
         share[k] = (radius / drawn) * (radius / drawn) * drawn / (drawn + 0.6 * half_);
@@ -58,11 +59,17 @@ void main() {
     vec4 absorption = texelFetch(absorptions, row());
     ink = absorption.w < 0.0 ? vec4(absorption.xyz, -1.0 - absorption.w) : absorption + ownAbsorption;
 #endif
-    reach = spacing * vec2(1.5) + vec2(0.5 * speed * shutter, 0.0);
+    reach = spacing * vec2(1.5) + vec2(path, 0.0);
     haze = 0.06 * gone * split;
-    vec2 margin = max(vec2(far_, wide), reach) + 0.6 * pixel;
-    place = (corner() * 2.0 - 1.0) * margin;
+    vec2 margin = max(vec2(far_, wide), kSeen * reach) + 0.6 * pixel;
     centreView = c;
     alongView = along;
-    if (depth - reach.y > frame.planes.x) gl_Position = frame.projection * vec4(c + along * place.x + across * place.y, 1.0);
+    if (depth - reach.y <= frame.planes.x) return;
+    vec2 half_ = abs(along.xy) * margin.x + abs(across.xy) * margin.y;
+    if (asPoint()) {
+        gl_Position = pointOver((c.xy - half_) / depth, (c.xy + half_) / depth, depth);
+    } else {
+        vec2 at = (corner() * 2.0 - 1.0) * margin;
+        gl_Position = frame.projection * vec4(c + along * at.x + across * at.y, 1.0);
+    }
 }

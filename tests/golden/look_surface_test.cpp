@@ -137,6 +137,38 @@ TEST_F(LookSurface, aParticleOfTheBodyIsAnExactSphereAlsoAtThePicturesEdge) {
     }
 }
 
+// A point whose centre lies outside the picture is not drawn: what of it reaches in must be all the same; nor may it be cut to its size.
+TEST_F(LookSurface, pointsShowWhatQuadsShow) {
+    filter = "none";
+    bounds.add(vec3(-1.6F));
+    bounds.add(vec3(1.6F, 1.6F, 0.8F));
+    TestRandom random;
+    TestParticles cloud;
+    cloud.spacing = 0.1F;
+    for (int k = 0; k < 400; ++k) cloud.add(1.5F * random.inCube() * vec3(1.0F, 1.0F, 0.5F), 0.3F + 0.7F * random.uniform());
+    const float largest = programs.largestPoint;
+    for (const bool ellipsoids : {false, true}) {
+        if (ellipsoids) cloud.findEllipsoids();
+        std::array<std::vector<float>, 2> depths;
+        std::array<std::vector<vec4>, 2> pictures;
+        for (const bool points : {false, true}) {
+            programs.largestPoint = points ? largest : 0.0F;
+            draw(cloud);
+            depths[points ? 1 : 0] = depth;
+            pictures[points ? 1 : 0] = radiance;
+        }
+        size_t water = 0, otherDepths = 0, otherColours = 0;
+        for (size_t k = 0; k < depth.size(); ++k) {
+            water += depths[0][k] != kNothing ? 1U : 0U;
+            otherDepths += std::abs(depths[0][k] - depths[1][k]) > 1e-4F ? 1U : 0U;
+            otherColours += glm::length(vec3(pictures[0][k] - pictures[1][k])) > 0.01F ? 1U : 0U;
+        }
+        EXPECT_GT(water, depth.size() / 10);
+        EXPECT_EQ(otherDepths, 0U) << ellipsoids;
+        EXPECT_LT(otherColours, depth.size() / 200) << ellipsoids << ": at the rims of the mist";
+    }
+}
+
 // As the iso-surface has it: 0.51 spacings, see IsoSurface.ASheetIsFlatAndADropIsASmallBall; wherever in the picture it is.
 TEST_F(LookSurface, theReferenceOfADropIsAnExactSphere) {
     add = addReference;

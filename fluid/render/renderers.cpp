@@ -12,8 +12,8 @@ RendererRow screenSpaceRenderer();
 RendererRow referenceRenderer();
 
 namespace {
-constexpr int kTilePixels = 32;      // pixels
-constexpr float kLongest = 4.0F;     // radii, of what is drawn: kOverlap of particle.glsl, times an ellipsoid's longest half axis (2.6)
+constexpr int kTilePixels = 32;   // pixels
+constexpr float kLongest = 4.0F;  // radii, of what is drawn: kOverlap of particle.glsl, times an ellipsoid's longest half axis (2.6)
 }  // namespace
 
 const Table<RendererRow>& renderers() {

@@ -9,13 +9,8 @@ command -v xdotool >/dev/null && command -v Xvfb >/dev/null || { echo "skipped: 
 work="$(mktemp -d)"
 running= server=
 trap 'kill $running $server 2>/dev/null || true; rm -rf "$work"' EXIT
-# A display of its own, whose number the server says once it is ready.
-unset WAYLAND_DISPLAY XAUTHORITY
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -noreset 3>"$work/display" 2>"$work/server" &
-server=$!
-for _ in $(seq 300); do [ -s "$work/display" ] || sleep 0.2; done
-[ -s "$work/display" ] || { cat "$work/server"; exit 1; }
-export DISPLAY=":$(cat "$work/display")" LIBGL_ALWAYS_SOFTWARE=1 XDG_CACHE_HOME="$work/cache" XDG_CONFIG_HOME="$work/config"
+. "$here/display.sh"
+start_display "$work" 1280x800
 mkdir -p "$work/config/rivulet" && touch "$work/config/rivulet/seen"  # who was here before is not greeted
 cd "$work"
 

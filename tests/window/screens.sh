@@ -9,11 +9,8 @@ for tool in xdotool Xvfb ffmpeg; do command -v $tool >/dev/null || { echo "skipp
 work="$(mktemp -d)"
 running= server=
 trap 'kill $running $server 2>/dev/null || true; rm -rf "$work"' EXIT
-unset WAYLAND_DISPLAY XAUTHORITY
-Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp -noreset 3>"$work/display" 2>"$work/server" &
-server=$!
-for _ in $(seq 300); do [ -s "$work/display" ] || sleep 0.2; done
-export DISPLAY=":$(cat "$work/display")" LIBGL_ALWAYS_SOFTWARE=1 XDG_CACHE_HOME="$work/cache" XDG_CONFIG_HOME="$work/config"
+. "$here/display.sh"
+start_display "$work" 1280x720
 cd "$work"
 slow="${SCREENS_SLOW:-1}" # times the waits
 rest() { sleep "$(awk "BEGIN { print $1 * $slow }")"; }

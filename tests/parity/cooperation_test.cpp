@@ -283,7 +283,7 @@ TEST(CooperationOfTheCpu, AutoTriesAllAvailablePlans) {
         EXPECT_NE(t.plan, Plan::thesis) << "pbf has no cells to find before a step";
         if (k > 0) EXPECT_GE(t.frameMs.median, (*tried)[k - 1].frameMs.median);
     }
-    EXPECT_GE(cpus, 1U) << "alone, and behind unless it was much slower";
+    EXPECT_TRUE(cpus >= 1 || tried->front().backend == "cl") << "alone, and behind unless it was much slower; beside a fast GPU neither";
     EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
     EXPECT_LT(shares.back(), 1);
     EXPECT_NE(sentenceOf(*tried, "gl").find("it replaces --backend gl"), std::string::npos) << sentenceOf(*tried, "gl");

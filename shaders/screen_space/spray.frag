@@ -1,7 +1,6 @@
 // Droplets of one particle: spheres of the liquid, drawn out along their paths, and the mist around them.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
-#include "shaders/render/shadow.glsl"
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;  // window depth
 uniform sampler2D waterDepth;  // m
@@ -19,6 +18,7 @@ flat in vec3 centreView;
 flat in vec3 alongView;
 flat in float haze;
 flat in vec2 reach;
+flat in float lit;
 layout(location = 0) out vec4 colour;
 
 void main() {
@@ -60,11 +60,9 @@ void main() {
     vec3 bent = -toEye * (1.0 - 2.0 * once * once) - side * (2.0 * once * sqrt(1.0 - once * once));
     vec2 uv = clamp(pixelOf(centreView + bent * (4.0 * spacing)) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
     vec2 inside = (1.0 - smoothstep(vec2(0.45), vec2(0.5), abs(uv - 0.5)));
-    // A drop shows all that is around it, and little of what is close behind; what is in front of it is not seen in it.
+    // A drop shows all that is around it, too small for details, and little of what is close behind; what is in front of it is not seen in it.
     float seen = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < depth ? 0.0 : 0.6 * inside.x * inside.y;
-    vec3 through = mix(environment(directionToWorld(bent), 0.2), textureLod(sceneColour, uv, 0.0).rgb, seen);
-    vec3 world = toWorld(centreView);
-    float lit = meshShadow(world, frame.lightDir.xyz);
+    vec3 through = mix(ambient(directionToWorld(bent)), textureLod(sceneColour, uv, 0.0).rgb, seen);
     vec3 sun = frame.lightColour.rgb * lit;
     vec3 white = ambient(directionToWorld(n)) + sun * (0.3183099 * (0.5 + 0.5 * dot(directionToWorld(n), frame.lightDir.xyz)));
 #if defined(INK)

@@ -13,11 +13,12 @@ uniform float range;    // m: maximum deviation from a straight line of depths o
 uniform float bend;     // m
 uniform bool first;     // marks the walls and smooths nothing
 
-float z, sum, weights, votes;
+float z, sum, votes;
+float curved;  // m: `bend`, but at the walls of the box 0
 bool atWall = false;
+float around[9];  // m, row by row, `k` pixels apart
 float vote(float d) { return d < 0.0 ? 1.0 : d < kFar ? -1.0 : 0.0; }
-void addPair(ivec2 away, float w) {
-    float a = at(here + away), b = at(here - away);
+void addPair(float a, float b, float w) {
     votes += vote(a) + vote(b);
     if (min(a, b) < 0.0) {
         a = b = z;
@@ -26,23 +27,18 @@ void addPair(ivec2 away, float w) {
     float off = a + b - 2.0 * z;
     float near = min(a, b);
     float pair = a + b;
-    if (off > range) {
-        vec3 place = frame.cameraPos.xyz + directionToWorld(viewRay(gl_FragCoord.xy)) * z, wall = min(place - low, high - place);
-        float curved = min(min(wall.x, wall.y), wall.z) < 5.0 * bend ? 0.0 : bend;
-        pair = 2.0 * z + curved * (near > z + range ? 2.0 : 1.0);
-    }
+    if (off > range) pair = 2.0 * z + curved * (near > z + range ? 2.0 : 1.0);
     sum += w * (off < -range ? 2.0 * z : pair);
-    weights += 2.0 * w;
 }
 // Beside a wall the surface goes on to one side only, and opposite neighbours do not balance: the depth of the plane through those that
 // are there.
-float planeAt(int k, float side, float centre) {
+float planeAt(float side, float centre) {
     float s = 0.0, sz = 0.0;
     vec2 sp = vec2(0.0), spz = vec2(0.0);
     vec3 spp = vec3(0.0);  // xx, xy, yy
     for (int i = 0; i < 9; ++i) {
         ivec2 p = ivec2(i % 3, i / 3) - 1;
-        float d = i == 4 ? z : at(here + k * p);
+        float d = i == 4 ? z : around[i];
         if (d < 0.0 || abs(d - z) > range) continue;
         float w = (p.x == 0 ? centre : side) * (p.y == 0 ? centre : side);
         vec2 q = vec2(p);
@@ -72,14 +68,16 @@ void main() {
     float pixels = min(step_ / (z * frame.ray.y), maxStep);
     int k = max(int(ceil(pixels)), 1);
     float side = 0.25 * pixels * pixels / float(k * k), centre = 1.0 - 2.0 * side;
-    sum = centre * centre * z;
-    weights = centre * centre;
-    addPair(ivec2(k, 0), side * centre);
-    addPair(ivec2(0, k), side * centre);
-    addPair(ivec2(k, k), side * side);
-    addPair(ivec2(k, -k), side * side);
+    for (int i = 0; i < 9; ++i) around[i] = at(here + k * (ivec2(i % 3, i / 3) - 1));
+    vec3 place = frame.cameraPos.xyz + directionToWorld(viewRay(gl_FragCoord.xy)) * z, walls = min(place - low, high - place);
+    curved = min(min(walls.x, walls.y), walls.z) < 5.0 * bend ? 0.0 : bend;
+    sum = centre * centre * z;  // the weights' sum is 1
+    addPair(around[5], around[3], side * centre);
+    addPair(around[7], around[1], side * centre);
+    addPair(around[8], around[0], side * side);
+    addPair(around[2], around[6], side * side);
     bool wall = votes > 0.0 && z < kFar && (z - inside.x) * slant < 4.0 * bend;
-    float smoothed = own < 0.0 || wall ? inside.x : z >= kFar ? z : atWall ? planeAt(k, side, centre) : sum / weights;
+    float smoothed = own < 0.0 || wall ? inside.x : z >= kFar ? z : atWall ? planeAt(side, centre) : sum;
 #if !defined(LAST)
     if (wall) smoothed = -smoothed;
 #endif

@@ -1,6 +1,6 @@
 // Quads, one per row of buffers, drawn by FluidPrograms::drawQuads: four vertices per row, and kRows rows per instance.
 // One instance per quad was three times slower on llvmpipe, and leaves most of a wave idle on a GPU.
-// Or squares, by FluidPrograms::drawPoints: one vertex per row.
+// Or squares, by FluidPrograms::drawSplats: one vertex per row.
 uniform uint firstRow, rows;  // the first that is drawn, and the end
 uniform vec2 pointTarget;     // pixels of the target; x 0: quads are drawn, not points
 const uint kRows = 4096u;

@@ -13,8 +13,18 @@ namespace {
 constexpr GLenum kFirst = 0x0B00, kLast = 0x9400;  // where OpenGL 4.5 has the numbers of pieces of state
 constexpr double kUntouched = -12345.678;
 
-// Values that change by themselves: clocks, the free memory of a driver, and what a driver notes about its own doings (where a buffer lies).
-const std::set<GLenum> kMoving = {GL_TIMESTAMP, 0x87FB, 0x87FC, 0x87FD, 0x9047, 0x9048, 0x9049, 0x904A, 0x904B, GL_DEBUG_LOGGED_MESSAGES,
+// Values that change by themselves: clocks, the free memory of a driver, and what a driver notes about its own doings (where a buffer
+// lies).
+const std::set<GLenum> kMoving = {GL_TIMESTAMP,
+                                  0x87FB,
+                                  0x87FC,
+                                  0x87FD,
+                                  0x9047,
+                                  0x9048,
+                                  0x9049,
+                                  0x904A,
+                                  0x904B,
+                                  GL_DEBUG_LOGGED_MESSAGES,
                                   GL_DEBUG_NEXT_LOGGED_MESSAGE_LENGTH};
 
 std::vector<double> trimmed(const std::array<double, 1024>& values) {

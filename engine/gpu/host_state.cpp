@@ -36,8 +36,8 @@ constexpr GLenum kSwitches[] = {GL_DEPTH_TEST,
                                 GL_DITHER};
 constexpr GLint kClipDistances = 8;
 // The same for a compatibility context; the header of the core profile has no names for them.
-constexpr GLenum kAlphaTest = 0x0BC0, kPolygonStipple = 0x0B42, kVertexTwoSide = 0x8643, kPointSprite = 0x8861;
-constexpr GLenum kOldSwitches[] = {kAlphaTest, kPolygonStipple, kVertexTwoSide, kPointSprite};
+constexpr GLenum kAlphaTest = 0x0BC0, kPolygonStipple = 0x0B42, kVertexTwoSide = 0x8643, kPointSprite = 0x8861, kPointSmooth = 0x0B10;
+constexpr GLenum kOldSwitches[] = {kAlphaTest, kPolygonStipple, kVertexTwoSide, kPointSprite, kPointSmooth};
 constexpr GLenum kClampVertex = 0x891A, kClampFragment = 0x891B;
 
 constexpr std::pair<GLenum, GLint> kPixelStore[] = {

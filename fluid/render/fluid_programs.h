@@ -1,5 +1,5 @@
-// FluidPrograms: the shader programs of all renderers and filters, by name, and the two ways to draw with them: a quad for each row of a
-// buffer, and the tiles of the picture that hold water.
+// FluidPrograms: the shader programs of all renderers and filters, by name, and the ways to draw with them: a quad or a point for each row
+// of a buffer, and the tiles of the picture that hold water.
 #pragma once
 
 #include <array>

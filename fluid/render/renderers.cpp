@@ -12,8 +12,9 @@ RendererRow screenSpaceRenderer();
 RendererRow referenceRenderer();
 
 namespace {
-constexpr int kTilePixels = 32;   // pixels
-constexpr float kLongest = 4.0F;  // radii, of what is drawn: kOverlap of particle.glsl, times an ellipsoid's longest half axis (2.6)
+constexpr float kMostLarger = 8.0F;  // times that one is larger which represents as many as it can
+constexpr int kTilePixels = 32;      // pixels
+constexpr float kLongest = 4.0F;     // radii, of what is drawn: kOverlap of particle.glsl, times an ellipsoid's longest half axis (2.6)
 }  // namespace
 
 const Table<RendererRow>& renderers() {
@@ -44,9 +45,13 @@ Splats splatsOf(const FluidDraw& d, float radius, int scale) {
     if (b.empty() || !(nearest > d.view.nearPlane)) return {target, std::numeric_limits<float>::infinity()};
     // Off the axis of the picture, a sphere's image is longer by the ray's length over its depth.
     const mat4& p = d.view.projection;
-    const float x = (1.0F + std::abs(p[2][0])) / p[0][0], y = (1.0F + std::abs(p[2][1])) / p[1][1];
-    const float pixels = std::max(p[0][0] * target.x, p[1][1] * target.y);  // of 2 m at a depth of 1 m
-    return {target, kLongest * radius * std::sqrt(1.0F + x * x + y * y) * pixels / nearest};
+    const float wide = std::abs(p[0][0]), tall = std::abs(p[1][1]);
+    const float x = (1.0F + std::abs(p[2][0])) / wide, y = (1.0F + std::abs(p[2][1])) / tall;
+    const float pixels = std::max(wide * target.x, tall * target.y);  // of 2 m at a depth of 1 m
+    const float largest = kLongest * radius * std::sqrt(1.0F + x * x + y * y) * pixels / nearest;
+    // From afar one represents others, and is larger: see representedBy().
+    const float far = std::min(kMostLarger * largest, 2 * kLongest * kMostLarger * detailOf(d));
+    return {target, detailOf(d) > 0 ? std::max(largest, far) : largest};
 }
 
 void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle from, gpu::TextureHandle to,

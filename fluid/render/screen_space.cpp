@@ -416,7 +416,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba32f};
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
     // The blur hides the larger radius of half the particles, but refraction would show that their number varies from place to place,
-    // unless hundreds of them share a texel.
+    // unless each texel is covered by several for each layer of them.
     const float texelRadius = clipRadius * 0.5F * static_cast<float>(side);
     const Drawn some = d.look.caustics && texelRadius * kManyShare > kLeastDisc ? allOf(d.fluid) : drawnOf(d);
     Kept kept;

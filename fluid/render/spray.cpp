@@ -1,4 +1,6 @@
 // The droplets of what has left the body of the water.
+#include <algorithm>
+
 #include "fluid/render/renderers.h"
 
 namespace rivulet {
@@ -7,7 +9,9 @@ namespace {
 // m: particles of this spacing and less are drops, which tension holds together; of the other and more, spray of finer drops (the capillary
 // length of water is 2.7 mm, and drops of 5 mm break in the air: Villermaux and Bossa 2009).
 constexpr float kDrops = 0.002F, kSpray = 0.008F;
-constexpr float kLongestPath = 0.1F;  // of the picture's height: half the longest path during the exposure that is drawn
+// Half the longest path during the exposure that is drawn, of the picture's height; where droplets are points, it may be shorter.
+constexpr float kLongestPath = 0.1F;
+constexpr float kPathsEach = 4.0F;  // of those lengths in a droplet's picture: 2.4, and longer away from the picture's axis
 }  // namespace
 
 void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
@@ -43,10 +47,12 @@ void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
-        Splats splats = splatsOf(d, d.fluid.radius, 1);
-        const float longest = kLongestPath * splats.target.y;
+        // Droplets reach 1.72 spacings from their particle, and half their path on.
+        Splats splats = splatsOf(d, std::max(d.fluid.radius, 0.5F * d.fluid.spacing), 1);
+        float longest = moves ? kLongestPath * splats.target.y : 0.0F;
+        if (splats.largest < programs.largestPoint) longest = std::min(longest, (programs.largestPoint - splats.largest) / kPathsEach);
         p.set("longest", longest);
-        splats.largest += 3.0F * longest;
+        splats.largest += kPathsEach * longest;
         programs.drawSplats(p, d.fluid, splats, rows);
     });
 }

@@ -79,8 +79,8 @@ vec2 tangents(float c, float depth, float cc, float cz, float zz) {
     return vec2(-b - t, -b + t) / a;
 }
 
-// Clip position of a point that covers the rectangle of the slopes `low` to `high` at `depth`, m. It covers what of it is within the picture: a
-// point whose centre lies outside is not drawn.
+// Clip position of a point that covers the rectangle of the slopes `low` to `high` at `depth`, m. It covers what of it is within the
+// picture: a point whose centre lies outside is not drawn.
 vec4 pointOver(vec2 low, vec2 high, float depth) {
     vec4 a = frame.projection * vec4(low * depth, -depth, 1.0), b = frame.projection * vec4(high * depth, -depth, 1.0);
     vec2 from = max(min(a.xy, b.xy) / a.w, vec2(-1.0)), to = min(max(a.xy, b.xy) / a.w, vec2(1.0));

@@ -23,7 +23,7 @@ layout(location = 0) out vec4 colour;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    float depth = -centreView.z, pixel = depth * frame.ray.x;
+    float depth = -centreView.z, pixel = depth * abs(frame.ray.x);
     vec3 toEye = -normalize(centreView), across = cross(toEye, alongView), ray = viewRay(gl_FragCoord.xy);
     vec3 off_ = ray * (dot(centreView, toEye) / dot(ray, toEye)) - centreView;
     vec2 place = vec2(dot(off_, alongView), dot(off_, across));  // m, along the path and across
@@ -31,7 +31,7 @@ void main() {
     float hider = min(depthOfWindow(texelFetch(sceneDepth, here, 0).r), texelFetch(waterDepth, here, 0).r);
     float there = smoothstep(-0.25 * spacing, 0.25 * spacing, hider - depth);
     if (there <= 0.0) discard;
-    float open = 1.0, deepest = 0.0, away = 1.0, radius = 1.0, bright = 0.0, perEdge = 1.0 / (1.4 * pixel);
+    float open = 1.0, deepest = 1.0e9, away = 1.0, radius = 1.0, bright = 0.0, perEdge = 1.0 / (1.4 * pixel);
     vec2 outwards = vec2(0.0);  // m
     for (int k = 0; k < kDroplets; ++k) {
         vec4 drop = droplet[k];
@@ -60,7 +60,8 @@ void main() {
     vec3 bent = -toEye * (1.0 - 2.0 * once * once) - side * (2.0 * once * sqrt(1.0 - once * once));
     vec2 uv = clamp(pixelOf(centreView + bent * (4.0 * spacing)) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
     vec2 inside = (1.0 - smoothstep(vec2(0.45), vec2(0.5), abs(uv - 0.5)));
-    // A drop shows all that is around it, too small for details, and little of what is close behind; what is in front of it is not seen in it.
+    // A drop shows all that is around it, too small for details, and little of what is close behind; what is in front of it, it does not
+    // show.
     float seen = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < depth ? 0.0 : 0.6 * inside.x * inside.y;
     vec3 through = mix(ambient(directionToWorld(bent)), textureLod(sceneColour, uv, 0.0).rgb, seen);
     vec3 sun = frame.lightColour.rgb * lit;

@@ -1,4 +1,4 @@
-// A particle that has left the body of the water, as the droplets that it stands for: a quad that covers them and their paths during the exposure.
+// A particle that has left the body of the water, as the droplets that it stands for: a point or quad over them and their paths during the exposure.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/shadow.glsl"
 #include "shaders/screen_space/particle.glsl"
@@ -38,7 +38,7 @@ void main() {
     if (lost(particle) || gone <= 0.0) return;
     vec3 c = (frame.view * vec4(particle.xyz, 1.0)).xyz, v = vec3(0.0);
     if (shutter > 0.0) v = mat3(frame.view) * texelFetch(velocities, row()).xyz;
-    float depth = -c.z, pixel = depth * frame.ray.x;
+    float depth = -c.z, pixel = depth * abs(frame.ray.x);
     vec3 toEye = -normalize(c), seen = v - toEye * dot(v, toEye);
     float speed = length(seen), path = min(0.5 * speed * shutter, longest * pixel);  // m, half of it
     vec3 along = speed > 1.0e-6 ? seen / speed : normalize(cross(toEye, vec3(0.31, 0.95, 0.0))), across = cross(toEye, along);
@@ -68,9 +68,15 @@ void main() {
     alongView = along;
     lit = meshShadow(particle.xyz, frame.lightDir.xyz);
     if (depth - reach.y <= frame.planes.x) return;
-    vec2 half_ = abs(along.xy) * margin.x + abs(across.xy) * margin.y;
-    if (asPoint()) {
-        gl_Position = pointOver((c.xy - half_) / depth, (c.xy + half_) / depth, depth);
+    if (asPoint()) {  // the corners of the same quad
+        vec2 low = vec2(1.0e9), high = -low;
+        for (int k = 0; k < 4; ++k) {
+            vec3 at = c + along * (float(k & 1) * 2.0 - 1.0) * margin.x + across * (float(k >> 1) * 2.0 - 1.0) * margin.y;
+            vec2 slope = at.xy / max(-at.z, frame.planes.x);
+            low = min(low, slope);
+            high = max(high, slope);
+        }
+        gl_Position = pointOver(low, high, depth);
     } else {
         vec2 at = (corner() * 2.0 - 1.0) * margin;
         gl_Position = frame.projection * vec4(c + along * at.x + across * at.y, 1.0);

@@ -98,7 +98,7 @@ class LookDetail : public LookTest {
                 }
         return mean;
     }
-    // Triangles that reach the rasteriser, without photons, which are as many at any distance.
+    // Points and triangles that reach the rasteriser, without photons, which are as many at any distance.
     uint64_t drawn(float detail) {
         settings.look.caustics = false;
         GLuint query = 0;
@@ -116,7 +116,7 @@ class LookDetail : public LookTest {
         std::array<double, 2> errors;  // with look.detail, and with all particles
         std::array<int, 2> covered;    // pixels
         double thickness;              // with it over without
-        double drawn;                  // the same of triangles
+        double drawn;                  // the same of points and triangles
     };
     Far at(float distance) {
         from(distance);

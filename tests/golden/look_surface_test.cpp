@@ -42,6 +42,10 @@ class LookSurface : public LookPassesTest {
         d.frame = graph.importBuffer("frame", block.name(), block.bytes());
         for (const unsigned name : d.fluid.ellipsoids)
             if (name != 0) d.ellipsoids.push_back(graph.importBuffer("ellipsoids", name, particles.position.size() * sizeof(vec4)));
+        if (exposure > 0) {
+            d.fluid.exposure = exposure;
+            d.velocity = graph.importBuffer("velocities", d.fluid.velocity, particles.position.size() * sizeof(vec4));
+        }
         d.position = graph.importBuffer("positions", d.fluid.position, particles.position.size() * sizeof(vec4));
         d.colour = graph.importTexture("colour", colour);
         d.depth = graph.importTexture("depth", sceneDepth);
@@ -76,6 +80,7 @@ class LookSurface : public LookPassesTest {
     int width = 320, height = 180;
     std::string filter = "narrow_range";
     Bounds bounds;
+    float exposure = 0;  // s, simulated
     Camera camera;
     FrameParams frame{};
     std::vector<float> depth;
@@ -147,8 +152,10 @@ TEST_F(LookSurface, pointsShowWhatQuadsShow) {
     cloud.spacing = 0.1F;
     for (int k = 0; k < 400; ++k) cloud.add(1.5F * random.inCube() * vec3(1.0F, 1.0F, 0.5F), 0.3F + 0.7F * random.uniform());
     const float largest = programs.largestPoint;
+    ASSERT_GE(largest, 240) << "points are not drawn";
     for (const bool ellipsoids : {false, true}) {
         if (ellipsoids) cloud.findEllipsoids();
+        exposure = ellipsoids ? 0.1F : 0.0F;  // and with streaks
         std::array<std::vector<float>, 2> depths;
         std::array<std::vector<vec4>, 2> pictures;
         for (const bool points : {false, true}) {
@@ -165,7 +172,7 @@ TEST_F(LookSurface, pointsShowWhatQuadsShow) {
         }
         EXPECT_GT(water, depth.size() / 10);
         EXPECT_EQ(otherDepths, 0U) << ellipsoids;
-        EXPECT_LT(otherColours, depth.size() / 200) << ellipsoids << ": at the rims of the mist";
+        EXPECT_EQ(otherColours, 0U) << ellipsoids;
     }
 }
 

@@ -1,5 +1,5 @@
-# Sourced: start_display FOLDER WIDTHxHEIGHT starts an X server of its own, writes its number to FOLDER, and points the programs that follow at
-# it, with settings and caches of their own in FOLDER. Sets `server`, its process.
+# Sourced: start_display FOLDER WIDTHxHEIGHT starts an X server of its own, writes its number to FOLDER, and points the programs that follow
+# at it, with settings and caches of their own in FOLDER. Sets `server`, its process.
 start_display() {
     unset WAYLAND_DISPLAY XAUTHORITY
     Xvfb -displayfd 3 -screen 0 "${2}x24" -nolisten tcp -noreset 3>"$1/display" 2>"$1/server" &

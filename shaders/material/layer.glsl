@@ -16,16 +16,44 @@ struct Liquid {
 
 vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * vec4(layerAbsorption.www, 1.0); }
 
-// A wet trail is not flat: it is higher in its middle than at its edge, which a map with heights of 10 um and texels of
-// 0.3 mm does not resolve. The slope of such a cushion, from the gradient of the wetness at its edge.
-vec3 filmEdge(Tangents t, vec2 uv, float lod) {
-    const float kSoft = 0.6e-3, kCushion = 3.0e-4;  // m, width of the edge; m, height
+// Roughness of a surface, -1..1, with features `size` m wide, whatever the scale of its uv; yzw: its slope, 1/m, in the tangent plane. Features
+// of less than two pixels fade out.
+vec4 roughnessAt(Tangents t, vec2 uv, float size) {
+    float level = -log2(size * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), scale = exp2(floor(level)), share = fract(level);
+    vec4 a = noise(vec3(uv * scale, 0.5)), b = noise(vec3(uv * 2.0 * scale, 7.5));
+    float seen = 1.0 - smoothstep(0.25, 0.5, t.footprint / size);
+    return seen * vec4(mix(a.x, b.x, share), gradient(t, mix(a.yz, 2.0 * b.yz, share) * scale));
+}
+
+// A film is not flat: it is a cushion, higher in its middle than at its edge, which a map with heights of 10 um and texels of 0.3 mm does not
+// resolve. The slope of one of height 1, from the gradient of the wetness over `size` m; `around`: its mean there.
+vec3 cushion(Tangents t, vec2 uv, float lod, float size, out float around) {
     float texels = float(textureSize(layerMap, 0).x);
-    float wide = max(log2(kSoft * texels * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), lod);
-    float e = exp2(wide) / texels;
-    vec2 fall = vec2(textureLod(layerMap, uv + vec2(e, 0.0), wide).w - textureLod(layerMap, uv - vec2(e, 0.0), wide).w,
-                     textureLod(layerMap, uv + vec2(0.0, e), wide).w - textureLod(layerMap, uv - vec2(0.0, e), wide).w);
-    return gradient(t, fall * (0.5 * kCushion / e));
+    float wide = max(log2(size * texels * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), lod);
+    float e = 0.5 * exp2(wide) / texels;
+    float l = textureLod(layerMap, uv - vec2(e, 0.0), wide).w, r = textureLod(layerMap, uv + vec2(e, 0.0), wide).w;
+    float d = textureLod(layerMap, uv - vec2(0.0, e), wide).w, u = textureLod(layerMap, uv + vec2(0.0, e), wide).w;
+    around = 0.25 * (l + r + d + u);
+    return gradient(t, vec2(r - l, u - d) * (0.5 / e));
+}
+
+// The slope of a film's surface. A trail is as wide as the wetness says, but its edge is held by pores and fine hairs, and where it is thin,
+// tension draws it into beads (Plateau and Rayleigh). `wet`: 0..1; what the map says becomes what is left of it.
+vec3 filmAt(Tangents t, vec2 uv, float lod, inout float wet) {
+    const float kReach = 3.0e-3, kSoft = 0.6e-3;  // m, how far an edge may move; m, width of an edge that is not moved
+    const float kHigh = 2.5e-4;                   // m, of a cushion
+    float narrow, around;
+    vec3 plain = kHigh * cushion(t, uv, lod, kSoft, narrow), slope = cushion(t, uv, lod, kReach, around);
+    float trail = smoothstep(0.2, 0.42, around);  // 0: specks, smaller than the reach
+    vec4 bead = roughnessAt(t, uv, 4.5e-3), hold = 0.45 * bead + 0.4 * roughnessAt(t, uv, 2.0e-3) + 0.2 * roughnessAt(t, uv, 0.7e-3);
+    // As it dries, it breaks up. Where all around is wet, nothing pulls at it.
+    float loose = mix(1.4, 0.8, smoothstep(0.3, 0.9, wet)) * (1.0 - 0.7 * smoothstep(0.85, 1.0, around));
+    const float kFrom = 0.46, kTo = 0.66;
+    float x = clamp((around * (1.0 + loose * hold.x) - kFrom) / (kTo - kFrom), 0.0, 1.0), steep = 6.0 * x * (1.0 - x) / (kTo - kFrom);
+    slope = slope * (1.0 + loose * hold.x) + around * loose * hold.yzw;
+    float held = min(wet * 2.0, 1.0) * x * x * (3.0 - 2.0 * x);
+    wet = mix(wet, held, trail);
+    return mix(plain, kHigh * (slope * steep * (0.8 + 0.5 * bead.x) + held * 0.5 * bead.yzw), trail);
 }
 
 Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
@@ -81,7 +109,12 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     const float kShade = 1.5e-4;
     float over = 1.0e-3 * liquidTexel(uv + uvStep(t, across) * (kShade / sun), lod).z - kShade;
     q.light *= 1.0 - 0.6 * (1.0 - q.drop) * smoothstep(0.0, 2.0e-4, over);
-    if (q.drop < 1.0 && lod < 4.0) q.slope += (1.0 - q.drop) * filmEdge(t, uv, lod);
+    if (q.drop < 1.0 && lod < 4.0) {
+        float film = q.wet;
+        vec3 slope = filmAt(t, uv, lod, film);
+        q.slope += (1.0 - q.drop) * slope;
+        q.wet = mix(film, q.wet, q.drop);
+    }
     q.variance = 0.10 * q.drop * smoothstep(3.0e-4, 1.5e-3, t.footprint);
     return q;
 }

@@ -27,8 +27,10 @@ uniform vec3 emission;
 #endif
 uniform sampler2D diffusionMap;  // see makeDiffusionTable
 layout(location = 0) out vec4 colour;
-#if defined(WET)
+#if defined(WET) || defined(LAYER)
 #include "shaders/material/noise.glsl"
+#endif
+#if defined(WET)
 #include "shaders/material/wet.glsl"
 #endif
 #if defined(SKIN)
@@ -75,7 +77,7 @@ void main() {
     }
 #endif
 #if defined(LAYER)
-    albedo.rgb = mix(albedo.rgb, albedo.rgb * sqrt(max(albedo.rgb, 0.0)) * 1.12, layerLook.w * q.wet);
+    albedo.rgb = mix(albedo.rgb, albedo.rgb * sqrt(max(albedo.rgb, 0.0)) * 1.12, layerLook.w * q.wet * (1.0 - 0.6 * q.drop));
 #endif
 
     vec3 matte, shine = vec3(0.0), f0 = vec3(0.04), facing = n;
@@ -97,7 +99,7 @@ void main() {
     vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
     vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * vec3(mix(open, sqrt(open), 0.3), open, open);
     // Thin parts: attenuation of the light between its entry and this point.
-    vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.20 * smoothstep(0.30, 0.75, -nl));
+    vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.20 * open * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
     arriving *= mix(vec3(1.0), vec3(q.light), vec3(0.35, 0.6, 0.75));  // light and shadow of a drop spread in the skin, red furthest
 #endif

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "engine/scene/transform.h"
@@ -9,12 +10,26 @@
 namespace rivulet {
 
 namespace {
-constexpr double kFar = 1.0e4;  // m
+constexpr double kFar = 1.0e4;       // m
+constexpr double kPulseStray = 0.3;  // periods that a pulse may begin late
+// 0 to 1, by a number alone: rows of one period, such as both eyes', keep time (Wang 1997's mix).
+double chosenOf(double number) {
+    auto h = static_cast<uint32_t>(static_cast<int64_t>(number));
+    h = (h ^ 61U ^ (h >> 16U)) * 9U;
+    h = (h ^ (h >> 4U)) * 0x27d4eb2dU;
+    return static_cast<double>(h ^ (h >> 15U)) / 4294967295.0;
+}
 }  // namespace
 
 double ExpressionParams::at(double time) const {
-    const double w = double{weight} + double{swing} * std::sin(2 * std::numbers::pi * (time / double{period} + double{phase}));
-    return std::clamp(w, 0.0, 1.0);
+    const double periods = time / double{period} + double{phase};
+    double wave = std::sin(2 * std::numbers::pi * periods);
+    if (pulse > 0) {
+        const double number = std::floor(periods), wide = std::min(double{pulse} / double{period}, 1 - kPulseStray);
+        const double at = (periods - number - kPulseStray * chosenOf(number)) / wide;
+        wave = glm::smoothstep(0.0, 0.3, at) * (1 - glm::smoothstep(0.3, 1.0, at));
+    }
+    return std::clamp(double{weight} + double{swing} * wave, 0.0, 1.0);
 }
 
 dmat4 FlowMotionParams::at(double time) const {
@@ -48,9 +63,10 @@ void FlowSourceParams::visit(ParamVisitor& v) {
 void ExpressionParams::visit(ParamVisitor& v) {
     v.value({.name = "morph", .doc = "name of a morph target of the mesh", .fixed = kFixed}, morph);
     v.value({"weight", "", "mean weight", 0, 1}, weight);
-    v.value({"swing", "", "amplitude of an oscillation of the weight", 0, 1}, swing);
-    v.value({"period", "s", "period of the oscillation", 0.05, 3600, kLog}, period);
+    v.value({"swing", "", "amplitude of an oscillation of the weight, or height of a pulse", 0, 1}, swing);
+    v.value({"period", "s", "period of the oscillation or the pulses", 0.05, 3600, kLog}, period);
     v.value({"phase", "", "phase of the oscillation, in periods", 0, 1}, phase);
+    v.value({"pulse", "s", "width of a pulse in each period, such as a blink, up to 0.7 of it; 0 = a sine wave", 0, 3600}, pulse);
 }
 
 void FlowMotionParams::visit(ParamVisitor& v) {

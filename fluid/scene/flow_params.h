@@ -28,10 +28,12 @@ struct FlowSourceParams {
     void visit(ParamVisitor& v);
 };
 
-// One morph target's weight over time: weight + swing sin(2 pi (t / period + phase)), kept within 0 to 1.
+// One morph target's weight over time, kept within 0 to 1: weight + swing sin(2 pi (t / period + phase)). With a pulse, such as a blink or
+// a sob, weight + swing for about `pulse` s once in each period, a little earlier or later each time; its rise takes 0.3 of it.
 struct ExpressionParams {
     std::string morph;
     float weight = 0, swing = 0, period = 3, phase = 0;
+    float pulse = 0;  // s; 0: a sine wave
     double at(double time) const;
     void visit(ParamVisitor& v);
 };

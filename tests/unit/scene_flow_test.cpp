@@ -227,6 +227,34 @@ TEST(SceneFlow, DropsInTheAirHaveTheWindAndTheDensityOfTheirOwnSkin) {
     EXPECT_NEAR(-speed[1] / speed[0], 2, 0.2);
 }
 
+// A pulse in each period, shut once and then open for most of it; never twice alike, and both eyes together.
+TEST(SceneFlow, ABlinkIsAPulseInEachPeriod) {
+    ExpressionParams left;
+    left.swing = 1;
+    left.period = 4;
+    left.pulse = 0.3F;
+    ExpressionParams right = left;
+    right.weight = 0.25F;
+    std::vector<double> starts;
+    for (int n = 0; n < 12; ++n) {
+        double start = -1, most = 0, width = 0;
+        for (int k = 0; k < 4000; ++k) {
+            const double time = 4 * n + k / 1000.0, w = left.at(time);
+            if (w > 0 && start < 0) start = time - 4 * n;
+            most = std::max(most, w);
+            width += w > 0 ? 0.001 : 0;
+            EXPECT_NEAR(right.at(time), std::min(w + 0.25, 1.0), 1e-12);
+        }
+        EXPECT_NEAR(most, 1, 1e-4);
+        EXPECT_NEAR(width, 0.3, 0.004);
+        starts.push_back(start);
+    }
+    EXPECT_GT(*std::max_element(starts.begin(), starts.end()) - *std::min_element(starts.begin(), starts.end()), 0.4);
+    left.pulse = 0;
+    EXPECT_NEAR(left.at(1), 1, 1e-12) << "a sine wave";
+    EXPECT_EQ(left.at(3), 0);
+}
+
 // Who opens the scene sees a tear before looking elsewhere: of each eye, within three seconds.
 TEST(SceneFlow, TheFirstTearsSpillAtOnce) {
     auto device = cpu();

@@ -142,7 +142,7 @@ TEST_F(LookSurface, aParticleOfTheBodyIsAnExactSphereAlsoAtThePicturesEdge) {
     }
 }
 
-// A point whose centre lies outside the picture is not drawn: what of it reaches in must be all the same; nor may it be cut to its size.
+// OpenGL does not draw a point whose centre lies outside the picture. The part of a particle that reaches into the picture must be drawn.
 TEST_F(LookSurface, pointsShowWhatQuadsShow) {
     filter = "none";
     bounds.add(vec3(-1.6F));
@@ -152,7 +152,8 @@ TEST_F(LookSurface, pointsShowWhatQuadsShow) {
     cloud.spacing = 0.1F;
     for (int k = 0; k < 400; ++k) cloud.add(1.5F * random.inCube() * vec3(1.0F, 1.0F, 0.5F), 0.3F + 0.7F * random.uniform());
     const float largest = programs.largestPoint;
-    ASSERT_GE(largest, 240) << "points are not drawn";
+    if (largest < 240 && !onLlvmpipe()) GTEST_SKIP() << "this GPU's points are too small for these particles";
+    ASSERT_GE(largest, 240) << "quads are drawn, not points";
     for (const bool ellipsoids : {false, true}) {
         if (ellipsoids) cloud.findEllipsoids();
         exposure = ellipsoids ? 0.1F : 0.0F;  // and with streaks

@@ -227,7 +227,7 @@ TEST(SceneFlow, DropsInTheAirHaveTheWindAndTheDensityOfTheirOwnSkin) {
     EXPECT_NEAR(-speed[1] / speed[0], 2, 0.2);
 }
 
-// A pulse in each period, shut once and then open for most of it; never twice alike, and both eyes together.
+// One pulse in each period, of the given height and width. It starts at another time in each period, and at the same time for both eyes.
 TEST(SceneFlow, ABlinkIsAPulseInEachPeriod) {
     ExpressionParams left;
     left.swing = 1;
@@ -255,7 +255,7 @@ TEST(SceneFlow, ABlinkIsAPulseInEachPeriod) {
     EXPECT_EQ(left.at(3), 0);
 }
 
-// Who opens the scene sees a tear before looking elsewhere: of each eye, within three seconds.
+// Within three seconds of the start, each eye has spilled a tear.
 TEST(SceneFlow, TheFirstTearsSpillAtOnce) {
     auto device = cpu();
     Result<std::unique_ptr<Session>> session = Session::create(crying({"flow.0.mapSize=64"}), *device, {});

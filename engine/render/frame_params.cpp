@@ -7,8 +7,8 @@
 namespace rivulet {
 namespace {
 
-// Three softboxes, whose directions follow the key light.
-void placeSoftboxes(FrameParams& f) {
+// Three softboxes, whose directions follow the key light. Those that light matte surfaces are as bright as their light needs.
+void placeSoftboxes(FrameParams& f, const Studio& studio) {
     const vec3 key(f.lightDir), colour(f.lightColour);
     const float flatLength = glm::length(vec2(key.x, key.z));
     const vec3 ahead = flatLength > 1e-3F ? vec3(key.x, 0.0F, key.z) / flatLength : vec3(1, 0, 0), side(-ahead.z, 0.0F, ahead.x);
@@ -17,14 +17,19 @@ void placeSoftboxes(FrameParams& f) {
         vec3 towards;
         vec2 halfSize;
         vec3 radiance;
+        float share = 0.0F;
     } boxes[3] = {{key, {0.30F, 0.22F}, 3.0F * colour},                                                     // around the key light
-                  {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint},           // a strip at one side
-                  {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0), {0.70F, 0.07F}, {2.6F, 2.85F, 3.0F}}};  // a wide one opposite the key
+                  {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint, studio.fill},  // a strip at one side
+                  {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0), {0.70F, 0.07F}, {2.6F, 2.85F, 3.0F}, studio.rim}};  // a wide one opposite the key
     for (size_t k = 0; k < 3; ++k) {
         const vec3 towards = glm::normalize(boxes[k].towards);
         f.boxTowards[k] = vec4(towards, boxes[k].halfSize.x);
         f.boxSide[k] = vec4(glm::normalize(glm::cross(vec3(0.0F, 1.0F, 0.001F), towards)), boxes[k].halfSize.y);
-        f.boxRadiance[k] = vec4(boxes[k].radiance, 0.0F);
+        // Of radiance 1 the light on a surface that faces the box, by what a key light of radiance 1 gives there.
+        const float perRadiance = 4.0F * boxes[k].halfSize.x * boxes[k].halfSize.y;
+        const float bright = std::max({colour.x, colour.y, colour.z}) * boxes[k].share / perRadiance;
+        const float own = std::max({boxes[k].radiance.x, boxes[k].radiance.y, boxes[k].radiance.z, 1e-4F});
+        f.boxRadiance[k] = vec4(boxes[k].radiance * std::max(1.0F, bright / own), boxes[k].share > 0 ? perRadiance / kPi : 0.0F);
     }
 }
 
@@ -71,7 +76,7 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
     f.planes = vec4(view.nearPlane, view.farPlane, p[2][2], p[3][2]);
     f.lightDir = vec4(glm::normalize(view.lightDirWorld), 0.0F);
     f.lightColour = vec4(view.lightColour, 0.0F);
-    placeSoftboxes(f);
+    placeSoftboxes(f, studio);
     f.horizon = vec4(studio.horizon, studio.tiles);
     f.zenith = vec4(studio.zenith, 0.0F);
     f.floorColour = vec4(studio.floor, studio.floorHeight);

@@ -112,6 +112,8 @@ void LightParams::visit(ParamVisitor& v) {
     v.value({"direction", "", "direction towards the light, of any length", -1.0e6, 1.0e6}, direction);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"intensity", "", "factor on the colour", 0, 100}, intensity);
+    v.value({"fill", "", "light of the studio's softbox at the side, as a share of the key light; 0: it is only reflected", 0, 10}, fill);
+    v.value({"rim", "", "light of the studio's softbox behind, as a share of the key light; 0: it is only reflected", 0, 10}, rim);
 }
 
 void BackgroundParams::visit(ParamVisitor& v) {

@@ -35,6 +35,7 @@ struct LightParams {
     vec3 direction{0.72F, 0.8F, 0.1F};  // towards the light
     vec3 colour{1.0F, 0.96F, 0.9F};     // linear
     float intensity = 3.6F;
+    float fill = 0.0F, rim = 0.0F;  // of the studio's softboxes beside and behind, as shares of the key light; 0: only reflected
     void visit(ParamVisitor& v);
 };
 

@@ -51,7 +51,7 @@ vec3 environment(vec3 dir, float roughness) {
     return radiance;
 }
 
-// Irradiance / pi: the radiance of a white diffuse surface with this normal, lit by sky and floor without the key light.
+// Irradiance / pi: the radiance of a white diffuse surface with this normal, lit by sky, floor and softboxes without the key light.
 vec3 ambient(vec3 normal) {
 #if defined(ENVIRONMENT_MAP)
     vec3 n = normal, sum = frame.matteLight[0].rgb + frame.matteLight[1].rgb * n.y + frame.matteLight[2].rgb * n.z + frame.matteLight[3].rgb * n.x;
@@ -61,5 +61,7 @@ vec3 ambient(vec3 normal) {
     vec3 above = mix(frame.horizon.rgb, frame.zenith.rgb, 0.6);
     vec3 below = mix(frame.horizon.rgb * 0.6, floorRadiance(), frame.floorFade.w);
     float up = 0.5 + 0.5 * normal.y;
-    return mix(below, above, up) * 0.9;
+    vec3 sum = mix(below, above, up) * 0.9;
+    for (int k = 1; k < 3; ++k) sum += frame.boxRadiance[k].rgb * (frame.boxRadiance[k].w * max(dot(normal, frame.boxTowards[k].xyz), 0.0));
+    return sum;
 }

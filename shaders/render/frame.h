@@ -25,7 +25,7 @@ STRUCT(FrameParams) {
     vec4 floorFade;         // x, z of the centre (m), radius where the floor begins to fade into the horizon (m), 1 if there is a floor
     vec4 boxTowards[3];     // softboxes: unit direction, world; w = half width / distance
     vec4 boxSide[3];        // unit; w = half height / distance
-    vec4 boxRadiance[3];
+    vec4 boxRadiance[3];    // w: matte light of radiance 1, 0: the box is only reflected
     vec4 matteLight[9];  // of an environment map, see environment_map.h
     // 1 if the meshes' map was drawn; 1 if the water's was, 2 if it holds light; metres a unit of the first map's depth, of the second's.
     vec4 shadow;

@@ -366,7 +366,7 @@ Part makeLashes(const Eye& eye, const Surface& head, std::vector<Lash>& ofVertex
                     part.positions.push_back(on + run * (sign * half));
                     part.uvs.emplace_back(0.5 + 0.5 * sign, u);
                     part.normals.push_back(outward);
-                    ofVertex.push_back({ring[i % n], upper});
+                    ofVertex.push_back({ring[i % n], upper, l, u});
                 }
             }
             for (uint32_t s = 0; s + 1 < kJoints; ++s) {
@@ -376,6 +376,55 @@ Part makeLashes(const Eye& eye, const Surface& head, std::vector<Lash>& ofVertex
             }
         }
     }
+    return part;
+}
+
+std::vector<dvec3> clumped(const Part& lashes, const std::vector<Lash>& ofVertex) {
+    std::vector<dvec3> places = lashes.positions;
+    auto clump = [](const Lash& l) { return (l.upper ? 0 : 1000) + static_cast<int>(0.24 * l.number + 0.35 * std::sin(1.7 * l.number)); };
+    for (size_t v = 0; v < places.size(); ++v) {
+        dvec3 sum(0);
+        int count = 0;
+        for (size_t w = 0; w < places.size(); ++w)
+            if (clump(ofVertex[w]) == clump(ofVertex[v]) && ofVertex[w].along == ofVertex[v].along) {
+                sum += lashes.positions[w];
+                ++count;
+            }
+        places[v] += (sum / static_cast<double>(count) - places[v]) * (0.85 * smoothstep(0.0, 0.8, ofVertex[v].along));
+    }
+    return places;
+}
+
+Part makeLashDrops(const Eye& eye, const Part& lashes, const std::vector<Lash>& ofVertex, std::vector<dvec3>& full,
+                   std::vector<Lash>& ofDrop) {
+    Part part;
+    part.name = eye.side > 0 ? "lashDropsLeft" : "lashDropsRight";
+    part.material = "drop";
+    const std::vector<dvec3> wet = clumped(lashes, ofVertex);
+    constexpr uint32_t kAround = 10, kRows = 7;
+    for (size_t v = 0; v < wet.size(); ++v) {
+        const Lash& l = ofVertex[v];
+        const bool holds = l.upper ? l.number % 23 == 12 : l.number % 9 == 4;
+        if (!holds || std::abs(l.along - (l.upper ? 0.6 : 0.8)) > 1e-6 || lashes.uvs[v].x > 0) continue;
+        const double radius = l.upper ? 0.030 : 0.038 + 0.010 * (l.number % 3);
+        const auto first = static_cast<uint32_t>(part.positions.size());
+        for (uint32_t j = 0; j <= kRows; ++j)
+            for (uint32_t i = 0; i < kAround; ++i) {
+                const double a = 2 * kPi * i / kAround, b = kPi * j / kRows;
+                const dvec3 d(std::sin(b) * std::cos(a), std::cos(b), std::sin(b) * std::sin(a));
+                part.positions.push_back(lashes.positions[v] + 0.003 * d);
+                full.push_back(wet[v] + radius * d * dvec3(1, d.y > 0 ? 1.35 : 1.0, 1));  // drawn out along the hairs that hold it
+                part.uvs.emplace_back(static_cast<double>(i) / kAround, static_cast<double>(j) / kRows);
+                ofDrop.push_back(l);
+            }
+        for (uint32_t j = 0; j < kRows; ++j)
+            for (uint32_t i = 0; i < kAround; ++i) {
+                const uint32_t p = first + j * kAround + i, q = first + j * kAround + (i + 1) % kAround;
+                if (j > 0) part.triangles.push_back({p, q, p + kAround});
+                if (j + 1 < kRows) part.triangles.push_back({q, q + kAround, p + kAround});
+            }
+    }
+    part.normals = normalsOf(part.positions, part.triangles);
     return part;
 }
 

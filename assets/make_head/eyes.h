@@ -47,10 +47,18 @@ std::array<Eye, 2> fitLids(Surface& head);
 Part makeEyeball(const Eye& eye);
 Part makeCornea(const Eye& eye);
 Part makeCaruncle(const Eye& eye);
+// Of a vertex: the lash that it is of.
 struct Lash {
     uint32_t root = 0;  // the nearest vertex of the skin
     bool upper = true;
+    int number = 0;    // along its lid
+    double along = 0;  // 0 at the root, 1 at the tip
 };
 Part makeLashes(const Eye& eye, const Surface& head, std::vector<Lash>& ofVertex);
+// Where lashes are when tears have wetted them: in clumps of a few, whose tips meet.
+std::vector<dvec3> clumped(const Part& lashes, const std::vector<Lash>& ofVertex);
+// Droplets held by clumps; `full` becomes each vertex's place when the lid is full, at rest they are too small to see.
+Part makeLashDrops(const Eye& eye, const Part& lashes, const std::vector<Lash>& ofVertex, std::vector<dvec3>& full,
+                   std::vector<Lash>& ofDrop);
 
 }  // namespace rivulet::head

@@ -119,6 +119,11 @@ const MaterialText kMaterials[] = {
     {"eye", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1},"metallicFactor":0,"roughnessFactor":0.2})"},
     {"cornea", R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.06],"metallicFactor":0,"roughnessFactor":0.03})"},
     {"caruncle", R"("pbrMetallicRoughness":{"baseColorFactor":[0.62,0.31,0.26,1],"metallicFactor":0,"roughnessFactor":0.3})"},
+    {"teeth", R"("pbrMetallicRoughness":{"baseColorFactor":[0.66,0.60,0.50,1],"metallicFactor":0,"roughnessFactor":0.28})"},
+    {"tongue", R"("pbrMetallicRoughness":{"baseColorFactor":[0.42,0.15,0.13,1],"metallicFactor":0,"roughnessFactor":0.42})"},
+    {"drop", R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.10],"metallicFactor":0,"roughnessFactor":0.03})"},
+    {"hair",
+     R"("doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.060,0.036,0.022,1],"metallicFactor":0,"roughnessFactor":0.4})"},
     {"lashes",
      R"("doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.015,0.010,0.008,1],"metallicFactor":0,"roughnessFactor":0.6})"},
 };

@@ -8,7 +8,9 @@
 
 #include "assets/make_head/cage.h"
 #include "assets/make_head/glb.h"
+#include "assets/make_head/hair.h"
 #include "assets/make_head/morphs.h"
+#include "assets/make_head/mouth.h"
 #include "assets/make_head/paint.h"
 #include "engine/core/file.h"
 
@@ -122,9 +124,22 @@ Result<size_t> make(const std::string& facePath, const std::string& folder) {
     for (const Eye& eye : eyes) {
         std::vector<Lash> ofVertex;
         Part lashes = makeLashes(eye, head, ofVertex);
-        lashes.morphs = lashMorphs(lashes, ofVertex, head, eye, parts[0].morphs);
-        for (Part& part : std::vector<Part>{makeEyeball(eye), makeCaruncle(eye), lashes}) parts.push_back(part);
+        lashes.morphs = lashMorphs(lashes, ofVertex, head, eye, parts[0].morphs, clumped(lashes, ofVertex));
+        std::vector<dvec3> full;
+        std::vector<Lash> ofDrop;
+        Part drops = makeLashDrops(eye, lashes, ofVertex, full, ofDrop);
+        drops.morphs = lashMorphs(drops, ofDrop, head, eye, parts[0].morphs, full);
+        for (Part& part : std::vector<Part>{makeEyeball(eye), makeCaruncle(eye), lashes, drops}) parts.push_back(part);
     }
+    std::vector<double> jaw;
+    Part teeth = makeTeeth(jaw);
+    teeth.morphs = jawMorphs(teeth, jaw);
+    Part tongue = makeTongue(jaw);
+    tongue.morphs = jawMorphs(tongue, jaw);
+    std::vector<uint32_t> roots;
+    Part brows = makeBrows(head, roots);
+    brows.morphs = carriedMorphs(roots, parts[0].morphs);
+    for (Part& part : std::vector<Part>{teeth, tongue, brows, makeHair(head)}) parts.push_back(part);
     for (const Eye& eye : eyes) parts.push_back(makeCornea(eye));  // last, because they are transparent
 
     std::error_code error;
@@ -134,6 +149,7 @@ Result<size_t> make(const std::string& facePath, const std::string& folder) {
                                                          {"head_albedo.jpg", asJpeg(skin.albedo, 92)},
                                                          {"head_relief.png", asPng(skin.relief)},
                                                          {"skin_regions.png", asPng(skin.regions)},
+                                                         {"head_flush.png", asPng(skin.flush)},
                                                          {"eye_albedo.jpg", asJpeg(paintEye(), 92)},
                                                          {"head.json", describe(head, eyes)}};
     size_t bytes = 0;

@@ -5,6 +5,8 @@
 namespace rivulet::head {
 namespace {
 
+constexpr double kJawOpens = 0.24;  // rad
+
 // 0 at the lids, 1 away from them: motions of brows and cheeks must not move the lids off the eyes.
 double awayFromLids(dvec3 p, bool above) {
     dvec2 d = dvec2(std::abs(p.x) - 3.17, p.y - 2.6) / dvec2(1.75, above ? 1.35 : 1.2);
@@ -127,7 +129,7 @@ std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array
                 if (name == "cheekRaise") morph[v] += cheeks(p, side) + lids(v, k, 0.0, 0.5);
                 if (name == "smile" || name == "frown" || name == "mouthPucker") morph[v] += mouth(p, side, name);
             }
-            if (name == "mouthOpen") morph[v] = jawTurned(p, 0.24 * vertex.weight[kJaw]) - p;
+            if (name == "mouthOpen") morph[v] = jawTurned(p, kJawOpens * vertex.weight[kJaw]) - p;
         }
         for (int k = 0; k < 2; ++k)
             if (name == (k == 0 ? "blinkLeft" : "blinkRight")) unfold(morph, head, around, places, eyes[k], k);
@@ -138,10 +140,13 @@ std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array
 }
 
 std::vector<std::vector<dvec3>> lashMorphs(const Part& lashes, const std::vector<Lash>& ofVertex, const Surface& head, const Eye& eye,
-                                           const std::vector<std::vector<dvec3>>& skin) {
+                                           const std::vector<std::vector<dvec3>>& skin, const std::vector<dvec3>& wet) {
     std::vector<std::vector<dvec3>> morphs;
-    for (const auto& morph : skin) {
+    for (size_t k = 0; k < skin.size(); ++k) {
+        const std::vector<dvec3>& morph = skin[k];
         std::vector<dvec3>& own = morphs.emplace_back(lashes.positions.size(), dvec3(0));
+        if (kMorphNames[k] == (eye.side > 0 ? "brimLeft" : "brimRight"))
+            for (size_t v = 0; v < own.size(); ++v) own[v] = wet[v] - lashes.positions[v];
         for (size_t v = 0; v < own.size(); ++v) {
             uint32_t root = ofVertex[v].root;
             if (morph[root] == dvec3(0)) continue;
@@ -151,6 +156,25 @@ std::vector<std::vector<dvec3>> lashMorphs(const Part& lashes, const std::vector
             dvec3 turned(d.x, d.y * std::cos(turn) + d.z * std::sin(turn), d.z * std::cos(turn) - d.y * std::sin(turn));
             own[v] = turned - d;
         }
+    }
+    return morphs;
+}
+
+std::vector<std::vector<dvec3>> carriedMorphs(const std::vector<uint32_t>& roots, const std::vector<std::vector<dvec3>>& skin) {
+    std::vector<std::vector<dvec3>> morphs;
+    for (const auto& morph : skin) {
+        std::vector<dvec3>& own = morphs.emplace_back();
+        for (const uint32_t root : roots) own.push_back(morph[root]);
+    }
+    return morphs;
+}
+
+std::vector<std::vector<dvec3>> jawMorphs(const Part& part, const std::vector<double>& jaw) {
+    std::vector<std::vector<dvec3>> morphs;
+    for (const std::string& name : kMorphNames) {
+        std::vector<dvec3>& own = morphs.emplace_back(part.positions.size(), dvec3(0));
+        if (name != "mouthOpen") continue;
+        for (size_t v = 0; v < own.size(); ++v) own[v] = jawTurned(part.positions[v], kJawOpens * jaw[v]) - part.positions[v];
     }
     return morphs;
 }

@@ -8,12 +8,18 @@
 
 namespace rivulet::head {
 
-inline const std::vector<std::string> kMorphNames = {"blinkLeft", "blinkRight", "browInnerUp", "browDown", "squintLeft", "squintRight",
-                                                     "frown",     "mouthOpen",  "mouthPucker", "smile",    "cheekRaise"};
+inline const std::vector<std::string> kMorphNames = {"blinkLeft",   "blinkRight", "browInnerUp", "browDown",    "squintLeft",
+                                                     "squintRight", "frown",      "mouthOpen",   "mouthPucker", "smile",
+                                                     "cheekRaise",  "brimLeft",   "brimRight"};
 
 std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array<Eye, 2>& eyes);
 // The same for lashes, which go with the lid they grow from.
+// `wet`: where the vertices are when the lid is full, see clumped().
 std::vector<std::vector<dvec3>> lashMorphs(const Part& lashes, const std::vector<Lash>& ofVertex, const Surface& head, const Eye& eye,
-                                           const std::vector<std::vector<dvec3>>& skin);
+                                           const std::vector<std::vector<dvec3>>& skin, const std::vector<dvec3>& wet);
+// Of a part whose vertices go with vertices of the skin.
+std::vector<std::vector<dvec3>> carriedMorphs(const std::vector<uint32_t>& roots, const std::vector<std::vector<dvec3>>& skin);
+// Of a part that goes with the jaw, each vertex by its share.
+std::vector<std::vector<dvec3>> jawMorphs(const Part& part, const std::vector<double>& jaw);
 
 }  // namespace rivulet::head

@@ -5,55 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assets/make_head/hair.h"
+#include "assets/make_head/noise.h"
+
 namespace rivulet::head {
 namespace {
-
-double hash(int64_t x, int64_t y, int64_t z, uint64_t seed) {
-    uint64_t h = static_cast<uint64_t>(x) * 0x9E3779B97F4A7C15ULL ^ static_cast<uint64_t>(y) * 0xC2B2AE3D27D4EB4FULL ^
-                 static_cast<uint64_t>(z) * 0x165667B19E3779F9ULL ^ seed * 0xD6E8FEB86659FD93ULL;
-    h ^= h >> 32;
-    h *= 0xD6E8FEB86659FD93ULL;
-    h ^= h >> 29;
-    h *= 0x9E3779B97F4A7C15ULL;
-    h ^= h >> 32;
-    return static_cast<double>(h >> 11) / 9007199254740992.0;
-}
-
-// Value noise in [-1, 1].
-double noise(dvec3 p, uint64_t seed) {
-    dvec3 c = glm::floor(p), f = p - c;
-    f = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
-    auto x = static_cast<int64_t>(c.x), y = static_cast<int64_t>(c.y), z = static_cast<int64_t>(c.z);
-    double sum = 0;
-    for (int k = 0; k < 8; ++k) {
-        int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
-        sum += (dx ? f.x : 1 - f.x) * (dy ? f.y : 1 - f.y) * (dz ? f.z : 1 - f.z) * hash(x + dx, y + dy, z + dz, seed);
-    }
-    return 2 * sum - 1;
-}
-
-double fractal(dvec3 p, int octaves, uint64_t seed) {
-    double sum = 0, size = 0.5;
-    for (int i = 0; i < octaves; ++i, size *= 0.5, p = p * 2.03 + dvec3(1.7, 9.2, 3.1)) sum += size * noise(p, seed + i);
-    return sum;
-}
-
-// Distance to the nearest of jittered points, one per cell; `which` receives the random number of the cell.
-double cells(dvec3 p, uint64_t seed, double& which) {
-    dvec3 c = glm::floor(p);
-    double best = 9;
-    for (int k = 0; k < 27; ++k) {
-        auto x = static_cast<int64_t>(c.x) + k % 3 - 1, y = static_cast<int64_t>(c.y) + k / 3 % 3 - 1,
-             z = static_cast<int64_t>(c.z) + k / 9 - 1;
-        dvec3 q = dvec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)) +
-                  dvec3(hash(x, y, z, seed), hash(x, y, z, seed + 1), hash(x, y, z, seed + 2));
-        if (double d = glm::distance(p, q); d < best) {
-            best = d;
-            which = hash(x, y, z, seed + 3);
-        }
-    }
-    return best;
-}
 
 struct Texel {
     dvec3 at{0}, normal{0};
@@ -127,7 +83,7 @@ class Brow {
     Brow() : ink_(size_t{kWide} * kHigh, 0) {
         for (int h = 0; h < 900; ++h) {
             double t = (h + hash(h, 0, 0, 71)) / 900, across = 2 * hash(h, 1, 0, 71) - 1;
-            double half = halfWidth(t);
+            double half = browHalfWidth(t);
             dvec2 at(t * kLength, across * half * 0.95);
             // Upright near the nose, then outward; upper hairs bend down, lower ones up.
             double angle =
@@ -147,10 +103,10 @@ class Brow {
         if (p.y < 3.2 || p.y > 6.4 || p.x < 0.4 || p.z < 1.5) return 0;
         double best = 1e9, run = 0;
         dvec2 place(0);
-        for (size_t i = 0; i + 1 < kLine.size(); ++i) {
-            dvec3 a = kLine[i], ab = kLine[i + 1] - a;
+        for (size_t i = 0; i + 1 < kBrowLine.size(); ++i) {
+            dvec3 a = kBrowLine[i], ab = kBrowLine[i + 1] - a;
             double length = glm::length(ab), t = glm::dot(p - a, ab) / (length * length);
-            double on = glm::clamp(t, i == 0 ? -0.5 : 0.0, i + 2 == kLine.size() ? 1.5 : 1.0);
+            double on = glm::clamp(t, i == 0 ? -0.5 : 0.0, i + 2 == kBrowLine.size() ? 1.5 : 1.0);
             dvec3 off = p - (a + ab * on);
             if (double d = glm::length(off); d < best) {
                 best = d;
@@ -170,9 +126,6 @@ class Brow {
   private:
     static constexpr double kLength = 4.6, kCell = 0.012;
     static constexpr int kWide = 500, kHigh = 150;
-    static constexpr std::array<dvec3, 6> kLine = {
-        {{1.25, 4.50, 5.24}, {2.05, 4.72, 5.16}, {2.85, 4.90, 4.98}, {3.75, 5.0, 4.57}, {4.6, 4.78, 4.0}, {5.35, 4.25, 3.25}}};
-    static double halfWidth(double t) { return 0.36 * (0.62 + 0.38 * smoothstep(0.0, 0.3, t)) * (1 - 0.82 * smoothstep(0.4, 1.05, t)); }
     void stamp(dvec2 p, double weight, double radius) {
         double x = (p.x + 0.6) / kCell, y = (p.y + 0.9) / kCell, r = radius / kCell + 0.5;
         for (int j = static_cast<int>(y - r); j <= y + r + 1; ++j)
@@ -231,6 +184,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
     skin.albedo = blank(kTextureSize, 3);
     skin.relief = blank(kTextureSize, 1);
     skin.regions = blank(kTextureSize, 4);
+    skin.flush = blank(kTextureSize, 3);
     const Brow brow;
     std::vector<char> covered(texels.size());
     std::vector<double> cheekSides;
@@ -286,19 +240,16 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         colour = glm::mix(colour, colour * dvec3(0.86, 0.76, 0.68), 0.55 * glm::clamp(freckled, 0.0, 1.0));
 
         // Short hair: denser up the scalp, with a scattered edge.
-        double front = 8.35 + 0.75 * smoothstep(0.8, 3.6, m.x) - 1.2 * smoothstep(4.2, 6.2, m.x);
-        double side = glm::mix(1.2, -3.8, smoothstep(-4.5, -9.5, p.z)), edge = glm::mix(front, side, smoothstep(2.6, -2.4, p.z));
-        double crop =
-            smoothstep(-0.7, 1.5, p.y - edge + 0.5 * fractal(p * 1.1, 2, 91) + 0.8 * fractal(p * dvec3(8, 2.2, 8), 2, 92)) * (1 - ear);
+        double crop = cropAt(p, ear);
         double stubble = 0.5 + 0.5 * cells(p * 13.0, 93, which);
-        colour = glm::mix(colour, rgb(92, 72, 60), crop * glm::clamp(0.40 + 0.38 * stubble + 0.2 * grain, 0.0, 0.82));
+        colour = glm::mix(colour, rgb(74, 54, 42), crop * glm::clamp(0.62 + 0.28 * stubble + 0.1 * grain, 0.0, 0.92));
 
         // Lips: lines across them, darker towards where they meet.
-        double line =
-            std::sin(p.x * 34 + 3.0 * fractal(dvec3(p.x * 5, p.y * 1.2, p.z), 3, 41)) * fractal(dvec3(p.x * 14, p.y * 2, p.z * 2), 2, 42);
+        double fan = p.x * (1 + 0.22 * (p.y + 4.2)), broken = fractal(dvec3(p.x * 4, p.y * 4, p.z), 3, 41);
+        double line = std::sin(fan * 46 + 4.0 * broken) * smoothstep(-0.25, 0.35, fractal(dvec3(p.x * 9, p.y * 5, p.z * 2), 2, 42));
         dvec3 lipColour = glm::mix(rgb(186, 108, 98), rgb(172, 92, 86), smoothstep(-4.3, -4.1, p.y));
         lipColour *=
-            1 + 0.12 * line + 0.06 * fractal(p * 3.0, 3, 43) - 0.18 * smoothstep(0.9, 1.0, t.weight[kLip]) * smoothstep(0.3, 1.5, hollow);
+            1 + 0.05 * line + 0.06 * fractal(p * 3.0, 3, 43) - 0.18 * smoothstep(0.9, 1.0, t.weight[kLip]) * smoothstep(0.3, 1.5, hollow);
         colour = glm::mix(colour, lipColour, 0.88 * lip);
         colour = glm::mix(colour, rgb(96, 34, 32), mouth);
         colour = glm::mix(colour, rgb(74, 34, 28), 0.88 * glm::clamp(nostril, 0.0, 1.0));
@@ -311,9 +262,16 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         double bed = 0;
         for (double dy : {-0.2, 0.0, 0.2}) bed += brow.at(m + dvec3(0.1 * dy, dy, 0)) / 3;
         colour = glm::mix(colour, colour * dvec3(0.70, 0.62, 0.56), 0.55 * smoothstep(0.0, 0.5, bed));
-        colour = glm::mix(colour, rgb(60, 42, 33), 0.85 * hair);
+        colour = glm::mix(colour, rgb(74, 52, 41), 0.55 * hair);  // the rest is hairs of its own: hair.cpp
         colour = glm::mix(colour, rgb(110, 70, 60), 0.40 * root);
         for (int c = 0; c < 3; ++c) put(skin.albedo, i, c, colour[c]);
+
+        // What crying reddens: the rims of the lids and the skin around the eyes, the nose and its wings, the cheeks a little, the chin.
+        double around = byEye * std::max(smoothstep(1.5, 0.05, toLower) * smoothstep(-0.2, 0.02, toLower), lid);
+        double flush = std::max({1.0 * rim * byEye, 0.75 * around, 0.85 * corner, 0.85 * nose, 0.8 * wing, 0.45 * cheek, 0.3 * chin,
+                                 0.25 * lip, 0.35 * bell(m, {0, 5.6, 5.6}, {2.2, 1.0, 2.0})});
+        put(skin.flush, i, 0, flush * (0.75 + 0.35 * blotch + 0.25 * speck) * face);
+        put(skin.flush, i, 1, std::max(smoothstep(0.02, 0.35, t.weight[kMouth]), 0.8 * glm::clamp(nostril, 0.0, 1.0)));
 
         // Relief, in mm.
         double pores =
@@ -324,10 +282,10 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         dvec3 bent = p + dvec3(0, 0.35 * fractal(p * 0.5, 2, 53), 0);
         height -=
             0.035 * forehead * std::pow(std::max(0.0, std::sin(bent.y * 2 * kPi / 0.95)), 8.0) * (0.6 + 0.8 * fractal(p * 0.8, 2, 54));
-        double around = toLower * 16 + 2.5 * fractal(p * 2.5, 3, 55);
-        height -= 0.030 * under * std::pow(0.5 + 0.5 * std::sin(around * 2.4), 4.0);
+        double lines = toLower * 16 + 2.5 * fractal(p * 2.5, 3, 55);
+        height -= 0.030 * under * std::pow(0.5 + 0.5 * std::sin(lines * 2.4), 4.0);
         height -= 0.025 * lid * std::pow(0.5 + 0.5 * std::sin(toUpper * 55 + 2 * fractal(p * 4.0, 2, 56)), 4.0);
-        height += lip * (0.075 * line + 0.02 * fractal(p * 12.0, 2, 57));
+        height += lip * (0.045 * line * (0.6 + 0.8 * fractal(p * 5.0, 2, 58)) + 0.03 * fractal(p * dvec3(16, 10, 16), 3, 57));
         height += 0.06 * hair;
         put(skin.relief, i, 0, (128 + height / kMillimetresPerStep) / 255.0);
 
@@ -336,7 +294,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         double dry =
             std::max(smoothstep(0.2, 0.7, cheek), smoothstep(-3.0, -5.0, p.y) * smoothstep(2.6, 4.0, m.x) * smoothstep(-3.0, -1.0, p.z));
         put(skin.regions, i, 1, dry * (1 - lip));
-        put(skin.regions, i, 2, std::max(hair, root));
+        put(skin.regions, i, 2, std::max({hair, root, crop}));
         put(skin.regions, i, 3, lip);
     }
     spreadOut(skin.albedo, covered, 12);

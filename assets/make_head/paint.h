@@ -19,9 +19,9 @@ struct Picture {
 };
 
 struct SkinPictures {
-    Picture albedo, relief, regions;
-    size_t overlaps = 0;          // texels that lie in two triangles
-    double cheekMillimetres = 0;  // a texel's greater side on the cheeks, median
+    Picture albedo, relief, regions, flush;  // flush: red, how much crying reddens; green, hollows
+    size_t overlaps = 0;                     // texels that lie in two triangles
+    double cheekMillimetres = 0;             // a texel's greater side on the cheeks, median
 };
 
 SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes);

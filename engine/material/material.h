@@ -16,6 +16,7 @@ struct SkinLook {
     std::shared_ptr<const Image> relief;      // red: height; null: smooth
     float reliefStep = 4.0e-6F;               // m per grey level
     std::shared_ptr<const Image> regions;     // masks: R oily, G dry, B hair, A lips; null: none
+    std::shared_ptr<const Image> flushes;     // red: how much Material::flush reddens; green: hollows without light from around
 };
 
 // An eyeball, in the frame of the mesh; the iris is drawn as refracted by the cornea. The images are Lambert equal-area maps: the centre is
@@ -35,17 +36,21 @@ struct Material {
     float roughness = 0.6F;
     float metallic = 0.0F;
 
-    vec3 emission{0.0F};                  // linear radiance of a light source
-    float opacity = 1.0F;                 // of the diffuse part of blended materials; reflections are not reduced
-    float porosity = -1.0F;               // share of the surface that is darker when it is wet; negative: rough dielectrics are
-    float grain = 0.0F;                   // stone or sand: strength of relief and spots, 0..1
-    float grainSize = 0.1F;               // m, size of the largest spots
-    bool blended = false;                 // drawn after opaque parts, from back to front
-    bool clear = false;                   // clear glass: each face reflects; baseColour and opacity give the transmission of a wall
-    float cutoff = 0.0F;                  // texels of smaller alpha are not drawn
-    float strand = 0.0F;                  // hair on blended ribbons: width of a hair as a share of u, centred; 0: no ribbons
-    bool doubleSided = true;              // false: back faces are culled
-    std::shared_ptr<const Image> colour;  // sRGB, times baseColour; alpha, times opacity
+    vec3 emission{0.0F};     // linear radiance of a light source
+    float opacity = 1.0F;    // of the diffuse part of blended materials; reflections are not reduced
+    float porosity = -1.0F;  // share of the surface that is darker when it is wet; negative: rough dielectrics are
+    float grain = 0.0F;      // stone or sand: strength of relief and spots, 0..1
+    float grainSize = 0.1F;  // m, size of the largest spots
+    bool blended = false;    // drawn after opaque parts, from back to front
+    bool clear = false;      // clear glass: each face reflects; baseColour and opacity give the transmission of a wall
+    float cutoff = 0.0F;     // texels of smaller alpha are not drawn
+    // Hair on blended ribbons, u from a whole number to the next across a ribbon, v from 0 at the roots to 1 at the tips: the width of a
+    // hair as a share of its part of u; 0: no ribbons.
+    float strand = 0.0F;
+    int strands = 1;                                 // hairs side by side on a ribbon
+    float flush = 0.0F;                              // 0..1: redness of skin, where it flushes, and of the white of an eye
+    bool doubleSided = true;                         // false: back faces are culled
+    std::shared_ptr<const Image> colour;             // sRGB, times baseColour; alpha, times opacity
     std::shared_ptr<const Image> metallicRoughness;  // blue, times metallic; green, times roughness
     std::shared_ptr<const Image> normals;            // in tangent space: x along u, y along v
     std::shared_ptr<const Image> occlusion;          // red: visible share of the surroundings

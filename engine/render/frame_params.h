@@ -16,7 +16,7 @@ struct Studio {
     float tiles = 0.0F;        // m, side of the floor's square tiles; 0: a plain floor
     bool showFloor = true;
     float fill = 0.0F, rim = 0.0F;  // matte light of the softboxes beside and behind, as shares of the key light's; 0: only reflected
-    Bounds shown;  // m; the visible content: the floor fades out around it
+    Bounds shown;                   // m; the visible content: the floor fades out around it
 };
 
 // Fills the uniform block. `meshes`, `water`: world bounds, m, that the light's shadow and water maps must cover; empty: no map.

@@ -61,7 +61,8 @@ Result<MaterialTextures> GpuImages::texturesOf(const Material& material) {
                {&out.occlusion, material.occlusion, ImageUse::data, white_, vec4(1)},
                {&out.glow, material.glow, ImageUse::colour, white_, vec4(1)},
                {&out.relief, skin != nullptr ? skin->relief : nothing, ImageUse::heights, level_, vec4(0)},
-               {&out.regions, skin != nullptr ? skin->regions : nothing, ImageUse::data, none_, vec4(0)}};
+               {&out.regions, skin != nullptr ? skin->regions : nothing, ImageUse::data, none_, vec4(0)},
+               {&out.flushes, skin != nullptr ? skin->flushes : nothing, ImageUse::data, none_, vec4(0)}};
     for (const auto& a : all) {
         Result<const gpu::Texture*> texture =
             a.image ? get(a.image, a.use, skin != nullptr ? skin->reliefStep : 0.0F) : plain(a.standIn, a.texel);
@@ -80,7 +81,7 @@ void GpuImages::keepOnly(const std::set<const Image*>& used) {
 std::set<const Image*> imagesOf(const Material& material) {
     std::set<const Image*> all = {material.colour.get(), material.metallicRoughness.get(), material.normals.get(), material.occlusion.get(),
                                   material.glow.get()};
-    if (material.skin) all.insert({material.skin->relief.get(), material.skin->regions.get()});
+    if (material.skin) all.insert({material.skin->relief.get(), material.skin->regions.get(), material.skin->flushes.get()});
     all.erase(nullptr);
     return all;
 }

@@ -16,7 +16,7 @@ enum class ImageUse { colour, data, heights };  // sRGB; linear; converted to sl
 struct MaterialTextures {
     const gpu::Texture *colour = nullptr, *metallicRoughness = nullptr, *normals = nullptr;
     const gpu::Texture *occlusion = nullptr, *glow = nullptr;
-    const gpu::Texture *relief = nullptr, *regions = nullptr, *pores = nullptr, *diffusion = nullptr;
+    const gpu::Texture *relief = nullptr, *regions = nullptr, *flushes = nullptr, *pores = nullptr, *diffusion = nullptr;
 };
 
 class GpuImages {

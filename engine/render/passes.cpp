@@ -72,6 +72,7 @@ void setSkin(Program& p, const SkinLook& skin, const MaterialTextures& textures)
     p.set("poreTiling", kPoreTiles);
     p.texture("reliefMap", 8, *textures.relief);
     p.texture("regionsMap", 9, *textures.regions);
+    p.texture("flushMap", 15, *textures.flushes);
     p.texture("poresMap", 10, *textures.pores);
     p.texture("diffusionMap", 11, *textures.diffusion);
 }
@@ -96,8 +97,9 @@ void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
     setPlace(p, m);
     p.set("scale", std::cbrt(std::abs(glm::determinant(mat3(m.toWorld)))));
     p.set("opacity", m.material.opacity);
+    p.set("flush", m.material.flush);
     p.set("cutoff", m.material.cutoff);
-    p.set("strand", m.material.strand);
+    p.set("strand", vec2(m.material.strand, static_cast<float>(m.material.strands)));
     auto lod = [](const gpu::Texture* map) { return std::log2(static_cast<float>(std::max(map->width(), map->height()))); };
     p.set("mapLod",
           vec4(lod(m.textures.colour), lod(m.textures.relief), lod(m.textures.regions), lod(m.textures.pores) + std::log2(kPoreTiles)));

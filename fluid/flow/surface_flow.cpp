@@ -449,4 +449,20 @@ void SurfaceFlow::ledgerLater(std::function<void(const Ledger&)> then) const {
                         });
 }
 
+void SurfaceFlow::brimsLater(std::function<void(std::span<const uint64_t>)> then) const {
+    const Impl& w = *impl_;
+    w.device->readLater(
+        w.drop, size_t{w.count()} * DROP_UINTS * sizeof(uint32_t),
+        [places = w.placesOf, first = size_t{w.count() - w.brimPlaces}, then = std::move(then)](std::span<const std::byte> bytes) {
+            const auto* state = reinterpret_cast<const uint32_t*>(bytes.data());
+            std::vector<uint64_t> content;
+            size_t at = first;
+            for (const uint32_t count : places) {
+                uint64_t& sum = content.emplace_back();
+                for (uint32_t k = 0; k < count; ++k, ++at) sum += state[at * DROP_UINTS + DROP_VOLUME];
+            }
+            then(content);
+        });
+}
+
 }  // namespace rivulet

@@ -136,6 +136,8 @@ class SurfaceFlow {
     Ledger ledger() const;  // waits
     // The same without waiting: `then` is called once, on the cpu before this returns, on a GPU in a later step; it may outlive the flow.
     void ledgerLater(std::function<void(const Ledger&)> then) const;
+    // Picolitres in each brim, in their order, to `then` as ledgerLater.
+    void brimsLater(std::function<void(std::span<const uint64_t>)> then) const;
 
     // All that the next step depends on, in host memory.
     struct Snapshot;

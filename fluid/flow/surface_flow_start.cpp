@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/core/param_check.h"
 #include "fluid/flow/footprint.h"
@@ -48,7 +49,8 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         if (Status sound = checkPlace(mesh.given[k], mesh.rest[k]); !sound) return sound;
     device = &on;
     brims = static_cast<uint32_t>(along.size());
-    for (const SkinBrim& b : along) brimPlaces += static_cast<uint32_t>(b.places.size());
+    for (const SkinBrim& b : along) placesOf.push_back(static_cast<uint32_t>(b.places.size()));
+    brimPlaces = std::accumulate(placesOf.begin(), placesOf.end(), 0U);
     const auto slots = static_cast<uint32_t>(params.capacity) + brimPlaces;
     Bounds around;
     for (const vec3& p : mesh.rest) around.add(p);

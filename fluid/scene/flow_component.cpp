@@ -26,7 +26,9 @@ namespace fs = std::filesystem;
 constexpr double kMicrolitre = 1.0e6;  // picolitres
 constexpr float kBrimStep = 6.0e-4F;   // m, between the places of a brim
 constexpr int kMostBrimPlaces = 400;
-constexpr size_t kMostEmitted = 4096;  // drops of one source in one step
+constexpr const char* kBrimMorphs[] = {"brimLeft", "brimRight"};
+constexpr double kReddened = 20 * kMicrolitre;  // of tears, after which eyes are about as red as they become
+constexpr size_t kMostEmitted = 4096;           // drops of one source in one step
 
 Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
     Bounds all;
@@ -145,6 +147,7 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     if (Status laid = c.layOut(**skin, log); !laid) return laid.error();
     if (Status added = c.addParts(*model, *skin, scene); !added) return added.error();
     if (Status ready = c.prepareFlow((*skin)->mesh); !ready) return ready.error();
+    c.lookIntoLids();
     if (Status masked = c.readRegions(sceneFolder, (*skin)->mesh); !masked) return masked.error();
     c.apply(params);
     c.placeNode(scene);
@@ -245,6 +248,9 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
                     std::find_if(part.morphs.begin(), part.morphs.end(), [&](const MorphTarget& m) { return m.name == e.morph; });
                 d.morphOf.push_back(at == part.morphs.end() ? -1 : static_cast<int>(at - part.morphs.begin()));
             }
+            for (size_t side = 0; side < 2; ++side)
+                for (size_t m = 0; m < part.morphs.size(); ++m)
+                    if (part.morphs[m].name == kBrimMorphs[side]) d.brimMorph[side] = static_cast<int>(m);
             if (!part.grips.empty()) d.bones = model.boneMatrices(part, stand);
             d.deformer->run({}, d.bones);
             node.deformer = d.deformer;
@@ -253,6 +259,7 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
         }
         node.mesh = std::make_shared<const Mesh>(part.mesh);
         scene.add(std::move(node));
+        ++parts_;
     }
     return ok();
 }
@@ -502,11 +509,26 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
     SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld};
     if (skinDeformer_) inputs.moved = &skinDeformer_->positions();
     if (Status moved = flow_->step(inputs, seconds); !moved) return moved;
+    lookIntoLids();
     if (flow_->refused() > 0)
         noticeOnce("a skin has no free drop slots: further drops are discarded and counted as drained; raise flow.liquid.capacity");
     for (const LeftDrop& d : flow_->takeLeft())
         air.push_back({dvec3(toWorld * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld) * dvec3(d.velocity), d.picolitres});
     return ok();
+}
+
+// Asks how full the lids are, for what is drawn only: the answer may come some steps later.
+void FlowComponent::lookIntoLids() {
+    if (brimBegin_[2] == 0) return;
+    const double holds = double{params_.liquid.brimHolds} * kMicrolitre;
+    const std::array<bool, 2> there = {brimBegin_[1] > 0, brimBegin_[2] > brimBegin_[1]};
+    flow_->brimsLater([full = std::weak_ptr(lidsFull_), holds, there](std::span<const uint64_t> content) {
+        const std::shared_ptr<std::array<float, 2>> into = full.lock();
+        if (!into) return;
+        size_t brim = 0;
+        for (size_t side = 0; side < 2; ++side)
+            if (there[side]) (*into)[side] = std::min(static_cast<float>(static_cast<double>(content[brim++]) / holds), 1.0F);
+    });
 }
 
 // Sets the expression at a time.
@@ -516,13 +538,20 @@ void FlowComponent::bend(double time) {
         for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
             if (d.morphOf[e] >= 0)
                 weights[static_cast<size_t>(d.morphOf[e])] += params_.expressive * static_cast<float>(params_.expression[e].at(time));
+        for (size_t side = 0; side < 2; ++side)
+            if (d.brimMorph[side] >= 0) weights[static_cast<size_t>(d.brimMorph[side])] += (*lidsFull_)[side];
         d.deformer->run(weights, d.bones);
     }
 }
 
 dmat4 FlowComponent::worldAt(double time) const { return glm::translate(dmat4(1.0), dvec3(params_.position)) * params_.motion.at(time); }
 
-void FlowComponent::placeNode(Scene& scene) const { scene.nodes()[static_cast<size_t>(group_)].local = mat4(placed_->toWorld()); }
+void FlowComponent::placeNode(Scene& scene) const {
+    scene.nodes()[static_cast<size_t>(group_)].local = mat4(placed_->toWorld());
+    const double wept = 1 - std::exp(-static_cast<double>(emitted_) / kReddened);
+    for (int k = 1; k <= parts_; ++k)
+        scene.nodes()[static_cast<size_t>(group_ + k)].material.flush = params_.redness * static_cast<float>(0.5 + 0.5 * wept);
+}
 
 Status FlowComponent::draw() {
     if (!texture_) {

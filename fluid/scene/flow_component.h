@@ -59,7 +59,8 @@ class FlowComponent {
     };
     struct Deformed {
         std::shared_ptr<Deformer> deformer;
-        std::vector<int> morphOf;  // of each of params_.expression, or -1
+        std::vector<int> morphOf;              // of each of params_.expression, or -1
+        std::array<int, 2> brimMorph{-1, -1};  // brimLeft, brimRight: what goes with the content of a lid
         size_t morphs = 0;
         std::vector<mat4> bones;  // of the file's node pose
     };
@@ -75,6 +76,7 @@ class FlowComponent {
     std::vector<SkinBrim> brims(const FlowMesh& mesh);
     Status readRegions(const std::string& sceneFolder, const Mesh& skin);
     void bend(double time);
+    void lookIntoLids();
     void emit(double time, double seconds, std::vector<AirDrop>& air);
     void emitOne(const FlowSourceParams& source, Source& state, uint32_t picolitres, std::vector<AirDrop>& air);
     SkinPoint somewhere(const FlowSourceParams& source, Source& state);
@@ -89,7 +91,7 @@ class FlowComponent {
     std::vector<std::string> noticed_;
     Bounds around_;  // bounds(), once a step
     Device* device_ = nullptr;
-    int group_ = 0;  // the parent node of all parts
+    int group_ = 0, parts_ = 0;  // the parent node of all parts, which follow it; how many
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: the skin does not deform
     std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps are made; kept in mode thesis
@@ -103,8 +105,10 @@ class FlowComponent {
     std::vector<Source> sources_;
     std::array<SkinPoint, 2> tears_{};     // of the left and right eye
     std::array<uint32_t, 3> brimBegin_{};  // places of the left, the right brim, and the end
-    std::vector<double> areaTo_;           // running sum of the triangles' areas, m^2, weighted by how oily they are
-    std::vector<uint8_t> oily_;            // of each place
+    // 0..1: how full each lid is, as last known; the device may report to it when this is gone.
+    std::shared_ptr<std::array<float, 2>> lidsFull_ = std::make_shared<std::array<float, 2>>();
+    std::vector<double> areaTo_;  // running sum of the triangles' areas, m^2, weighted by how oily they are
+    std::vector<uint8_t> oily_;   // of each place
     uint64_t emitted_ = 0;
 };
 

@@ -10,6 +10,9 @@
 namespace rivulet {
 namespace {
 
+constexpr int kHairs = 5, kBrowHairs = 2;  // on a ribbon
+constexpr float kHairWidth = 0.5F;         // of its part of the ribbon
+constexpr std::string_view kTearLine = "tearLine";
 constexpr vec3 kTint(0.93F, 1.0F, 1.15F);  // the painted skin is warmer than skin is
 
 // |x|^2 = 2 c . x + (r^2 - |c|^2), least squares about the mean. False where the points lie in a plane.
@@ -103,16 +106,23 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
         for (size_t k = 1; k + 1 < lid.size(); ++k) smooth[k] = 0.25F * lid[k - 1] + 0.5F * lid[k] + 0.25F * lid[k + 1];
         lid = smooth;
     }
+    constexpr float kBrimful = 2.2F;  // of the rest's width
+    std::vector<vec3> brimful;
     for (size_t k = 0; k < lid.size(); ++k) {
         const float along = static_cast<float>(k) / static_cast<float>(lid.size() - 1), full = std::sin(kPi * along);
         const vec3 out = glm::normalize(lid[k] - eye.centre), onto = glm::normalize(up - out * glm::dot(up, out));
         const float off = std::max(glm::distance(lid[k], eye.centre) - eyeSurface(eye, out), 1.0e-4F);
         const float reach = width * (0.08F + 0.92F * full);
-        for (uint32_t j = 0; j < kAcross; ++j) {  // a quarter of an ellipse, hollow as a meniscus is
+        // A point of the strip's profile, `up` and `thick` as shares of its reach and of the lid's height over the eye.
+        const auto at = [&](float up, float thick) {
+            const vec3 above = glm::normalize(lid[k] + onto * (reach * up) - eye.centre);
+            return eye.centre + above * (eyeSurface(eye, above) + 2.0e-5F + off * thick);
+        };
+        for (uint32_t j = 0; j < kAcross; ++j) {  // quarters of ellipses: hollow as a meniscus is, and about to spill
             const float angle = 0.5F * kPi * static_cast<float>(j) / (kAcross - 1);
-            const vec3 above = glm::normalize(lid[k] + onto * (reach * (1.0F - std::cos(angle))) - eye.centre);
-            part.mesh.positions.push_back(eye.centre + above * (eyeSurface(eye, above) + 2.0e-5F + off * (1.0F - std::sin(angle))));
+            part.mesh.positions.push_back(at(1.0F - std::cos(angle), 1.0F - std::sin(angle)));
             part.mesh.uvs.emplace_back(along, static_cast<float>(j) / (kAcross - 1));
+            brimful.push_back(at(kBrimful * std::sin(angle), 1.25F * std::cos(angle)) - part.mesh.positions.back());
         }
     }
     const auto stations = static_cast<uint32_t>(lid.size());
@@ -122,6 +132,7 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
             part.mesh.indices.insert(part.mesh.indices.end(), {a, b, b + 1, a, b + 1, a + 1});
         }
     for (const MorphTarget& morph : skin.morphs) {
+        if (morph.name.starts_with("brim")) continue;
         MorphTarget& own = part.morphs.emplace_back();
         own.name = morph.name;
         for (uint32_t k = 0; k < stations; ++k) {
@@ -132,6 +143,12 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
                 own.offsets.push_back(morph.offsets[static_cast<size_t>(at - morph.vertices.begin())]);
             }
         }
+    }
+    if (name.starts_with(kTearLine)) {
+        MorphTarget& own = part.morphs.emplace_back();
+        own.name = "brim" + name.substr(kTearLine.size());
+        for (uint32_t v = 0; v < brimful.size(); ++v) own.vertices.push_back(v);
+        own.offsets = brimful;
     }
     part.mesh.normals.assign(part.mesh.positions.size(), eye.sight);
     part.material.baseColour = vec3(1.0F);
@@ -165,8 +182,8 @@ Status dressHead(Model& head, const std::string& folder) {
     for (ModelPart& part : head.parts) {
         if (part.name == "skin") {
             auto skin = std::make_shared<SkinLook>();
-            const std::pair<const char*, std::shared_ptr<const Image>*> pictures[] = {{"head_relief.png", &skin->relief},
-                                                                                      {"skin_regions.png", &skin->regions}};
+            const std::pair<const char*, std::shared_ptr<const Image>*> pictures[] = {
+                {"head_relief.png", &skin->relief}, {"skin_regions.png", &skin->regions}, {"head_flush.png", &skin->flushes}};
             for (const auto& [name, into] : pictures) {
                 Result<std::shared_ptr<const Image>> image = imageIfThere((std::filesystem::path(folder) / name).string());
                 if (!image) return image.error();
@@ -183,12 +200,17 @@ Status dressHead(Model& head, const std::string& folder) {
             part.material.doubleSided = true;
         }
         if (part.name.starts_with("lashes")) widenStrands(part);
+        if (part.materialName == "hair") {
+            part.material.blended = true;
+            part.material.strand = kHairWidth;
+            part.material.strands = part.name == "brows" ? kBrowHairs : kHairs;
+        }
         if (part.name.starts_with("eye") && !part.material.blended) part.material.eye = std::make_shared<EyeLook>(eyeLookOf(part.mesh));
     }
     if (const ModelPart* skin = head.find("skin"); skin != nullptr)
         for (const ModelPart& part : head.parts) {
             if (!part.material.eye) continue;
-            ModelPart line = makeTearLine(*skin, *part.material.eye, "tearLine" + part.name.substr(3));
+            ModelPart line = makeTearLine(*skin, *part.material.eye, std::string(kTearLine) + part.name.substr(3));
             if (!line.mesh.indices.empty()) lines.push_back(std::move(line));
         }
     for (ModelPart& line : lines) head.parts.push_back(std::move(line));

@@ -12,8 +12,9 @@ namespace rivulet {
 EyeLook eyeLookOf(const Mesh& mesh);
 
 // The tear film along a lower lid: a blended, mirror-like strip that curves from the lid's edge to the eyeball. It follows the skin's
-// morph targets. `width`: m, from the lid to where it ends on the eye. Nothing where no lid is near the eye.
-ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width = 0.8e-3F);
+// morph targets; one named tearLineLeft gets a target brimLeft, the film as full as a lid holds. `width`: m, from the lid to where it ends
+// on the eye. Nothing where no lid is near the eye.
+ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width = 0.6e-3F);
 
 // The part `skin` becomes skin, with head_relief.png and skin_regions.png of `folder` where they are there; parts whose names begin with
 // `eye` and that are not blended become eyes, `caruncle` flesh, `lashes` soft-edged hairs if they are ribbons whose u runs across. Parts

@@ -35,6 +35,9 @@ void shadeEye(vec2 uv, vec3 n, vec3 toEye, vec3 albedo, vec3 falling, float lit,
     vec3 lampEye = normalize(mat3(toEyeMatrix) * lamp);
     float r = length(at.xy) / cornea.w;
     float iris = at.z > 0.0 ? 1.0 - smoothstep(0.94, 1.03, r) : 0.0;
+    // Crying fills the veins of the white and tints it, most towards the corners.
+    vec3 red = pow(max(albedo, 0.0), vec3(1.0, 2.0, 1.9)) * vec3(1.0, 0.80, 0.80);
+    albedo = mix(albedo, red, flush * (1.0 - iris) * mix(0.45, 1.0, smoothstep(0.55, 1.0, length(at.xy))));
     // The white: subsurface scattering as skin, and wet.
     vec3 wide = clamp(vec3(0.16, 0.10, 0.07), 0.0, 0.97);
     float nl = dot(n, lamp);

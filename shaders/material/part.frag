@@ -13,8 +13,9 @@ uniform vec3 baseColour;
 uniform float roughness;
 uniform float metallic;
 uniform float opacity;
+uniform float flush;   // 0..1: redness of skin and of the white of an eye
 uniform float cutoff;
-uniform float strand;  // hair: width of a strand as a share of u, in the middle of its ribbon; 0: none
+uniform vec2 strand;   // hair on ribbons: width of a hair as a share of its part of u, 0: none; hairs side by side
 uniform vec4 mapLod;   // log2 of the widths of the maps of colour, relief, regions and pores (those tiled)
 uniform sampler2D occlusion;
 uniform sampler2D colourMap;
@@ -38,6 +39,9 @@ layout(location = 0) out vec4 colour;
 #endif
 #if defined(EYE)
 #include "shaders/material/eye.glsl"
+#endif
+#if defined(BLENDED)
+#include "shaders/material/hair.glsl"
 #endif
 #if defined(LAYER)
 #include "shaders/material/layer.glsl"
@@ -69,11 +73,10 @@ void main() {
     vec4 albedo = look(colourMap, uv, t, mapLod.x) * vec4(baseColour, opacity);
     if (albedo.a < cutoff) discard;
 #if defined(BLENDED)
-    if (strand > 0.0) {  // the covered share of the pixel's width, so that thin strands fade instead of breaking up
-        float pixel = max(fwidth(posUv.x), 1.0e-4), from = max(abs(posUv.x - 0.5) - 0.5 * pixel, -0.5 * strand);
-        float to = min(abs(posUv.x - 0.5) + 0.5 * pixel, 0.5 * strand);
-        float held = clamp((to - from) / pixel, 0.0, 1.0);
-        albedo.a *= held * (2.0 - held);  // hairs shade each other
+    if (strand.x > 0.0) {
+        vec2 hair = hairAt(posUv, strand);
+        albedo.a *= hair.x * (2.0 - hair.x);  // hairs shade each other
+        albedo.rgb *= hair.y;
     }
 #endif
 #if defined(LAYER)
@@ -82,6 +85,10 @@ void main() {
 
     vec3 matte, shine = vec3(0.0), f0 = vec3(0.04), facing = n;
 #if defined(SKIN)
+    vec2 flushes = look(flushMap, uv, t, mapLod.z).rg;
+    float blood = flush * flushes.r;
+    open *= 1.0 - flushes.g;
+    albedo.rgb *= mix(vec3(1.0), vec3(0.98, 0.60, 0.58), blood);
     vec4 region = look(regionsMap, uv, t, mapLod.z);
     float fade = 1.0 - 0.5 * region.b, variance = 0.0, height = 0.0;
     vec3 slope = reliefSlope(reliefMap, uv, t, 1.0, mapLod.y, variance, height);
@@ -94,7 +101,7 @@ void main() {
     facing = normalize(n - slope - fine);
     vec3 soft = normalize(n - 0.35 * (slope + fine)), blurred = normalize(n - 0.12 * (slope + fine));
     float bend = clamp(abs(curvature), 2.0, 250.0), nl = dot(n, lamp);
-    lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));  // near the terminator the table is more exact than the shadow map
+    lit = mix(1.0, lit, smoothstep(0.0, 0.4, nl));  // near the terminator the table is more exact than the shadow map
     vec3 through = mix(vec3(lit), vec3(sqrt(lit)), vec3(0.9, 0.3, 0.0));  // red bleeds into a shadow's edge
     vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
     vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * vec3(mix(open, sqrt(open), 0.3), open, open);
@@ -182,7 +189,10 @@ void main() {
     }
 #endif
 #if defined(BLENDED)
-    if (strand > 0.0) shine *= 0.3 * albedo.a;
+    if (strand.x > 0.0) {
+        shadeHair(normalize(t.dv), normalize(normalWorld), toEye, albedo.rgb, falling * lit, open, matte, shine);
+        shine *= albedo.a;
+    }
     colour = vec4(matte * albedo.a + shine, albedo.a);  // specular light is kept where the body is transparent
 #if defined(LAYER)
     // A drop on a pane is a prism: what is behind is seen where the ray is bent to, at about the scene's own distance, or in the studio.

@@ -2,6 +2,7 @@
 // Needs surface.glsl, shadow.glsl and tangents.glsl.
 uniform sampler2D reliefMap;   // slopes, see makeSlopes
 uniform sampler2D regionsMap;  // oily, dry, hair, lip
+uniform sampler2D flushMap;    // red: where it reddens; green: hollows
 uniform sampler2D poresMap;    // slopes of a tile
 uniform vec3 scatterLength;    // m
 uniform vec2 skinAmount;       // strength of translucency, of pores

@@ -3,11 +3,12 @@
 uniform sampler2D shadowSharp;  // moments, narrowly blurred
 uniform sampler2D shadowSoft;   // moments, widely blurred
 
-const float kWarp = 40.0;
+const float kWarp = 40.0, kLevel = 3.2e-3;
 
 // `blocker`: the depth of what shades it, of the mean without its lit part (Yang et al. 2010).
-float litFraction(vec2 moments, float warped, out float blocker) {
-    float variance = max(moments.y - moments.x * moments.x, 1.0e-5 * warped * warped);
+// `spread`: of the depth, beyond which a point is surely shaded, as a share of what is warped.
+float litFraction(vec2 moments, float warped, float spread, out float blocker) {
+    float variance = max(moments.y - moments.x * moments.x, spread * spread * warped * warped);
     float beyond = warped - moments.x;
     float p = beyond <= 0.0 ? 1.0 : variance / (variance + beyond * beyond);
     blocker = log(p > 0.999 ? warped : max((moments.x - p * warped) / (1.0 - p), 1.0e-20)) / kWarp;
@@ -25,7 +26,23 @@ float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
     float warped = exp(kWarp * clamp(at.z, 0.0, 1.0));
     float blocker, nearest;
     vec2 narrow = texture(shadowSharp, at.xy).xy;
-    float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, blocker), sharp = litFraction(narrow, warped, nearest);
+    float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, kLevel, blocker);
+#if defined(SKIN)
+    // A shadow's edge is as wide as the key light's softbox makes it, and at least as the light spreads in skin.
+    const float kTangent = 0.26, kLeast = 4.5e-3;  // of the softbox; m
+    float reach = max(kTangent * max(at.z - blocker, 0.0) * frame.shadow.z, kLeast) * 0.5 * length(across);
+    vec2 sum = narrow;
+    for (int k = 0; k < 12; ++k) {  // on a disc, along a spiral of golden angles
+        float turn = 2.39996 * float(k);
+        sum += texture(shadowSharp, at.xy + vec2(cos(turn), sin(turn)) * (reach * sqrt((float(k) + 1.0) / 12.0))).xy;
+    }
+    // A surface along the light has many depths within that.
+    float facing = clamp(dot(normal, frame.lightDir.xyz), 0.05, 1.0), tilt = sqrt(1.0 - facing * facing) / facing;
+    float deep = reach / (0.5 * length(across)) * tilt / frame.shadow.z;
+    float sharp = litFraction(sum / 13.0, warped, kLevel + 0.5 * kWarp * deep, nearest);
+#else
+    float sharp = litFraction(narrow, warped, kLevel, nearest);
+#endif
     thickness = max(at.z - log(max(narrow.x, 1.0e-20)) / kWarp, 0.0) * frame.shadow.z;
     return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // a shadow is soft far from its caster
 }

@@ -200,6 +200,12 @@ Status dressHead(Model& head, const std::string& folder) {
             part.material.doubleSided = true;
         }
         if (part.name.starts_with("lashes")) widenStrands(part);
+        if (part.materialName == "teeth" || part.materialName == "tongue") {  // little light from around reaches into a mouth
+            auto shade = std::make_shared<Image>();
+            shade->width = shade->height = 1;
+            shade->rgba = {70, 70, 70, 255};
+            part.material.occlusion = shade;
+        }
         if (part.materialName == "hair") {
             part.material.blended = true;
             part.material.strand = kHairWidth;

@@ -57,6 +57,9 @@ void main() {
     Tangents t = tangentsAt(posWorld, posUv, n);
     vec2 uv = posUv;
     float open = texture(occlusion, gl_FragCoord.xy * frame.viewport.zw).r;
+#if defined(BLENDED)
+    if (opacity < 0.3) open = 1.0;  // it is known for the opaque surface behind
+#endif
     vec3 lamp = frame.lightDir.xyz;
     vec3 falling = frame.lightColour.rgb;
 #if defined(WATER)
@@ -106,7 +109,7 @@ void main() {
     vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
     vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * vec3(mix(open, sqrt(open), 0.3), open, open);
     // Thin parts: attenuation of the light between its entry and this point.
-    vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.20 * open * smoothstep(0.30, 0.75, -nl));
+    vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.16 * open * open * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
     arriving *= mix(vec3(1.0), vec3(q.light), vec3(0.35, 0.6, 0.75));  // light and shadow of a drop spread in the skin, red furthest
 #endif

@@ -26,15 +26,18 @@ float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
     float warped = exp(kWarp * clamp(at.z, 0.0, 1.0));
     float blocker, nearest;
     vec2 narrow = texture(shadowSharp, at.xy).xy;
+    float entered = narrow.x;
     float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, kLevel, blocker);
 #if defined(SKIN)
     // A shadow's edge is as wide as the key light's softbox makes it, and at least as the light spreads in skin.
-    const float kTangent = 0.26, kLeast = 4.5e-3;  // of the softbox; m
-    float reach = max(kTangent * max(at.z - blocker, 0.0) * frame.shadow.z, kLeast) * 0.5 * length(across);
-    vec2 sum = narrow;
+    const float kTangent = 0.26, kLeast = 4.5e-3, kMost = 9.0e-3;  // of the softbox; m; the soft map has wider edges
+    float reach = clamp(kTangent * (at.z - blocker) * frame.shadow.z, kLeast, kMost) * 0.5 * length(across);
+    vec2 sum = narrow;  // and the depth where light enters: the nearest around, since at an edge of the map the farthest is behind it
     for (int k = 0; k < 12; ++k) {  // on a disc, along a spiral of golden angles
         float turn = 2.39996 * float(k);
-        sum += texture(shadowSharp, at.xy + vec2(cos(turn), sin(turn)) * (reach * sqrt((float(k) + 1.0) / 12.0))).xy;
+        vec2 there = texture(shadowSharp, at.xy + vec2(cos(turn), sin(turn)) * (reach * sqrt((float(k) + 1.0) / 12.0))).xy;
+        sum += there;
+        entered = min(entered, there.x);
     }
     // A surface along the light has many depths within that.
     float facing = clamp(dot(normal, frame.lightDir.xyz), 0.05, 1.0), tilt = sqrt(1.0 - facing * facing) / facing;
@@ -43,7 +46,7 @@ float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
 #else
     float sharp = litFraction(narrow, warped, kLevel, nearest);
 #endif
-    thickness = max(at.z - log(max(narrow.x, 1.0e-20)) / kWarp, 0.0) * frame.shadow.z;
+    thickness = max(at.z - log(max(entered, 1.0e-20)) / kWarp, 0.0) * frame.shadow.z;
     return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // a shadow is soft far from its caster
 }
 float meshShadow(vec3 posWorld, vec3 normal) {

@@ -16,7 +16,7 @@ struct LayerLook {
 
     void visit(ParamVisitor& v) {
         v.value({"refractiveIndex", "", "refractive index of the liquid", 1, 2}, refractiveIndex);
-        v.value({"absorption", "1/m", "absorption coefficient of the liquid for red, green and blue", 0, 5000}, absorption);
+        v.value({"absorption", "1/m", "absorption coefficient of the liquid for red, green and blue", 0, 100000}, absorption);
         v.value({"roughness", "", "roughness of the surface of a drop", 0, 1}, roughness);
         v.value({"filmRoughness", "", "roughness of a wet surface without a drop", 0, 1}, filmRoughness);
         v.value({"darkening", "", "how much darker and more saturated a wet surface is; 0: as dry", 0, 1}, darkening);

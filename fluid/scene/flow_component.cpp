@@ -115,6 +115,23 @@ std::pair<vec3, vec3> across(const vec3& n) {
     return {a, glm::cross(n, a)};
 }
 
+// Marble scatters all colours alike, some millimetres deep (Jensen et al. 2001).
+Material marbleOf(const Material& own) {
+    static const auto look = [] {
+        auto made = std::make_shared<SkinLook>();
+        made->scatter = vec3(2.2e-3F, 2.6e-3F, 2.4e-3F);
+        made->translucency = 0.4F;
+        made->pores = 0.25F;
+        return made;
+    }();
+    Material marble;
+    marble.baseColour = vec3(0.56F, 0.545F, 0.51F);
+    marble.roughness = 0.5F;
+    marble.doubleSided = own.doubleSided;
+    marble.skin = look;
+    return marble;
+}
+
 float lengthOf(const std::vector<vec3>& line) {
     float sum = 0;
     for (size_t k = 1; k < line.size(); ++k) sum += glm::distance(line[k - 1], line[k]);
@@ -258,8 +275,8 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
             deformed_.push_back(std::move(d));
         }
         node.mesh = std::make_shared<const Mesh>(part.mesh);
+        looks_.push_back({node.material, node.visible});
         scene.add(std::move(node));
-        ++parts_;
     }
     return ok();
 }
@@ -549,8 +566,14 @@ dmat4 FlowComponent::worldAt(double time) const { return glm::translate(dmat4(1.
 void FlowComponent::placeNode(Scene& scene) const {
     scene.nodes()[static_cast<size_t>(group_)].local = mat4(placed_->toWorld());
     const double wept = 1 - std::exp(-static_cast<double>(emitted_) / kReddened);
-    for (int k = 1; k <= parts_; ++k)
-        scene.nodes()[static_cast<size_t>(group_ + k)].material.flush = params_.redness * static_cast<float>(0.5 + 0.5 * wept);
+    for (size_t k = 0; k < looks_.size(); ++k) {
+        Node& node = scene.nodes()[static_cast<size_t>(group_) + 1 + k];
+        const Look& look = looks_[k];
+        const bool thin = look.material.blended || look.material.strand > 0;  // hair, corneas, films
+        node.material = params_.marble && !thin ? marbleOf(look.material) : look.material;
+        node.visible = look.visible && !(params_.marble && thin);
+        node.material.flush = params_.redness * static_cast<float>(0.5 + 0.5 * wept);
+    }
 }
 
 Status FlowComponent::draw() {

@@ -91,7 +91,12 @@ class FlowComponent {
     std::vector<std::string> noticed_;
     Bounds around_;  // bounds(), once a step
     Device* device_ = nullptr;
-    int group_ = 0, parts_ = 0;  // the parent node of all parts, which follow it; how many
+    int group_ = 0;  // the parent node of all parts, which follow it
+    struct Look {
+        Material material;
+        bool visible = true;
+    };
+    std::vector<Look> looks_;  // of the parts, as the file and `hide` say
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: the skin does not deform
     std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps are made; kept in mode thesis

@@ -124,6 +124,7 @@ void FlowParams::visit(ParamVisitor& v) {
     v.group({.name = "thesis", .doc = "the forces of mode thesis"}, thesis);
     v.group({.name = "motion", .doc = "rigid motion of the skin"}, motion);
     v.value({"expressive", "", "factor on all of expression; 0 = none", 0, 1}, expressive);
+    v.value({.name = "marble", .doc = "shows the mesh as a statue: all its parts are of one marble, and it has no hair"}, marble);
     v.value({"redness", "", "how red crying makes the eyes, their lids and the nose; half at the start, all after 20 ul of tears", 0, 1},
             redness);
     v.list({.name = "expression", .doc = "weights of the mesh's morph targets"}, expression);

@@ -73,6 +73,7 @@ struct FlowParams {
     ThesisParams thesis;
     FlowMotionParams motion;
     float expressive = 1;  // factor of all weights in expression
+    bool marble = false;   // a statue: all parts of one marble, without hair
     float redness = 0;     // 0..1: of the skin around eyes and nose and of the whites, at last; half of it is there at the start
     std::vector<ExpressionParams> expression;
     std::vector<FlowSourceParams> sources;

@@ -11,7 +11,7 @@ namespace rivulet {
 namespace {
 
 constexpr int kHairs = 5, kBrowHairs = 2;  // on a ribbon
-constexpr float kHairWidth = 0.5F;         // of its part of the ribbon
+constexpr float kHairWidth = 0.4F;         // of its part of the ribbon
 constexpr std::string_view kTearLine = "tearLine";
 constexpr vec3 kTint(0.93F, 1.0F, 1.15F);  // the painted skin is warmer than skin is
 

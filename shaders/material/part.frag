@@ -111,7 +111,8 @@ void main() {
     // Thin parts: attenuation of the light between its entry and this point.
     vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.16 * open * open * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
-    arriving *= mix(vec3(1.0), vec3(q.light), vec3(0.35, 0.6, 0.75));  // light and shadow of a drop spread in the skin, red furthest
+    // Light and shadow of a drop spread below it, in skin red furthest; where the key light hardly reaches there is neither.
+    arriving *= mix(vec3(1.0), vec3(q.light), smoothstep(0.02, 0.5, nl) / (1.0 + scatterLength / 1.5e-3));
 #endif
     matte = albedo.rgb * (arriving * 0.3183099 + around + glow * falling * vec3(1.0, 0.32, 0.2));
     float oily = 0.30 + 0.75 * region.r - 0.10 * region.g;

@@ -134,20 +134,21 @@ dvec3 rounded(dvec3 p) { return glm::round(p * 1e4) / 1e4; }
 
 std::string asGlb(const std::vector<Part>& parts) {
     Writer writer;
-    std::string meshes, nodes, roots, materials, names, weights;
-    for (const std::string& name : kMorphNames) {
-        names += fmt::format("{}\"{}\"", names.empty() ? "" : ",", name);
-        weights += weights.empty() ? "0" : ",0";
-    }
+    std::string meshes, nodes, roots, materials;
     for (const MaterialText& m : kMaterials)
         materials += fmt::format("{}{{\"name\":\"{}\",{}}}", materials.empty() ? "" : ",", m.name, m.text);
     for (size_t i = 0; i < parts.size(); ++i) {
         const Part& part = parts[i];
         int material = 0;
         while (part.material != kMaterials[material].name) ++material;
-        std::string targets;
-        for (const auto& morph : part.morphs)
+        std::string targets, names, weights;
+        for (size_t m = 0; m < part.morphs.size(); ++m) {
+            const auto& morph = part.morphs[m];
+            if (std::all_of(morph.begin(), morph.end(), [](const dvec3& d) { return d == dvec3(0); })) continue;
             targets += fmt::format("{}{{\"POSITION\":{}}}", targets.empty() ? "" : ",", writer.displacements(morph));
+            names += fmt::format("{}\"{}\"", names.empty() ? "" : ",", kMorphNames[m]);
+            weights += weights.empty() ? "0" : ",0";
+        }
         int positions = writer.vectors(part.positions, 0.01, true), normals = writer.vectors(part.normals, 1, false);
         int uvs = writer.uvs(part.uvs), indices = writer.indices(part.triangles, part.positions.size());
         meshes += fmt::format(R"({}{{"name":"{}","primitives":[{{"attributes":{{"POSITION":{},"NORMAL":{},"TEXCOORD_0":{}}},"indices":{},)"

@@ -7,7 +7,8 @@
 
 namespace rivulet::head {
 
-// The bytes of the file. `parts[0]` is the skin; morphs of any part are named by kMorphNames and stored sparsely.
+// The bytes of the file. `parts[0]` is the skin; morphs of any part are named by kMorphNames and stored sparsely, those that
+// move nothing not at all.
 std::string asGlb(const std::vector<Part>& parts);
 
 // Rounds to the stored precision, whole micrometres (here in cm); all other files must agree with it.

@@ -73,7 +73,7 @@ Part makeHair(const Surface& head) {
     part.material = "hair";
     const std::vector<dvec3> normals = normalsOf(positionsOf(head), head.triangles);
     const dvec3 crown(0.8, 13.0, -9.5);
-    std::vector<Root> roots = scalpRoots(head, normals, 13.5);
+    std::vector<Root> roots = scalpRoots(head, normals, 11.0);
     // From the edges to the crown: what grows nearer to the crown lies over the rest.
     std::stable_sort(roots.begin(), roots.end(),
                      [&](const Root& a, const Root& b) { return glm::distance(a.at, crown) > glm::distance(b.at, crown); });

@@ -149,7 +149,7 @@ Result<size_t> make(const std::string& facePath, const std::string& folder) {
                                                          {"head_albedo.jpg", asJpeg(skin.albedo, 92)},
                                                          {"head_relief.png", asPng(skin.relief)},
                                                          {"skin_regions.png", asPng(skin.regions)},
-                                                         {"head_flush.png", asPng(skin.flush)},
+                                                         {"head_flush.jpg", asJpeg(skin.flush, 92)},
                                                          {"eye_albedo.jpg", asJpeg(paintEye(), 92)},
                                                          {"head.json", describe(head, eyes)}};
     size_t bytes = 0;

@@ -106,7 +106,7 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
         for (size_t k = 1; k + 1 < lid.size(); ++k) smooth[k] = 0.25F * lid[k - 1] + 0.5F * lid[k] + 0.25F * lid[k + 1];
         lid = smooth;
     }
-    constexpr float kBrimful = 2.2F;  // of the rest's width
+    constexpr float kBrimful = 1.7F;  // of the rest's width
     std::vector<vec3> brimful;
     for (size_t k = 0; k < lid.size(); ++k) {
         const float along = static_cast<float>(k) / static_cast<float>(lid.size() - 1), full = std::sin(kPi * along);
@@ -183,7 +183,7 @@ Status dressHead(Model& head, const std::string& folder) {
         if (part.name == "skin") {
             auto skin = std::make_shared<SkinLook>();
             const std::pair<const char*, std::shared_ptr<const Image>*> pictures[] = {
-                {"head_relief.png", &skin->relief}, {"skin_regions.png", &skin->regions}, {"head_flush.png", &skin->flushes}};
+                {"head_relief.png", &skin->relief}, {"skin_regions.png", &skin->regions}, {"head_flush.jpg", &skin->flushes}};
             for (const auto& [name, into] : pictures) {
                 Result<std::shared_ptr<const Image>> image = imageIfThere((std::filesystem::path(folder) / name).string());
                 if (!image) return image.error();

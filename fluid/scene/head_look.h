@@ -14,12 +14,12 @@ EyeLook eyeLookOf(const Mesh& mesh);
 // The tear film along a lower lid: a blended, mirror-like strip that curves from the lid's edge to the eyeball. It follows the skin's
 // morph targets; one named tearLineLeft gets a target brimLeft, the film as full as a lid holds. `width`: m, from the lid to where it ends
 // on the eye. Nothing where no lid is near the eye.
-ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width = 0.6e-3F);
+ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width = 0.8e-3F);
 
-// The part `skin` becomes skin, with head_relief.png and skin_regions.png of `folder` where they are there; parts whose names begin with
-// `eye` and that are not blended become eyes, `caruncle` flesh, `lashes` soft-edged hairs if they are ribbons whose u runs across. Parts
-// that are not there are no error; a picture that is damaged is.
-// Each eye gets a tear line, as parts `tearLine` + what follows `eye` in its name.
+// The part `skin` becomes skin, with head_relief.png, skin_regions.png and head_flush.jpg of `folder` where they are there; parts whose
+// names begin with `eye` and that are not blended become eyes, `caruncle` flesh, `lashes` soft-edged hairs if they are ribbons whose u runs
+// across. Parts that are not there are no error; a picture that is damaged is. Each eye gets a tear line, as parts `tearLine` + what
+// follows `eye` in its name.
 Status dressHead(Model& head, const std::string& folder);
 
 }  // namespace rivulet

@@ -61,7 +61,7 @@ vec3 ambient(vec3 normal) {
     vec3 above = mix(frame.horizon.rgb, frame.zenith.rgb, 0.6);
     vec3 below = mix(frame.horizon.rgb * 0.6, floorRadiance(), frame.floorFade.w);
     float up = 0.5 + 0.5 * normal.y;
-    vec3 sum = mix(below, above, up) * 0.9;
-    for (int k = 1; k < 3; ++k) sum += frame.boxRadiance[k].rgb * (frame.boxRadiance[k].w * max(dot(normal, frame.boxTowards[k].xyz), 0.0));
-    return sum;
+    vec3 around = mix(below, above, up) * 0.9;
+    for (int k = 1; k < 3; ++k) around += frame.boxRadiance[k].rgb * (frame.boxRadiance[k].w * max(dot(normal, frame.boxTowards[k].xyz), 0.0));
+    return around;
 }

@@ -42,7 +42,11 @@ TEST(HeadLook, aTearLineFollowsTheLowerLid) {
     }
     const EyeLook eye = *head->find("eyeLeft")->material.eye;
     for (const vec3& q : line->mesh.positions) EXPECT_GT(glm::distance(q, eye.centre), eye.radius) << "inside the eye";
-    ASSERT_EQ(line->morphs.size(), head->find("skin")->morphs.size());
+    ASSERT_EQ(line->morphs.size(), head->find("skin")->morphs.size() + 1) << "the skin's, and how full the lid is";
+    EXPECT_EQ(line->morphs.back().name, "brimLeft");
+    float risen = 0;
+    for (const vec3& offset : line->morphs.back().offsets) risen = std::max(risen, offset.y);
+    EXPECT_GT(risen, 4e-4F) << "a full lid's film is higher";
     const auto squint = std::find_if(line->morphs.begin(), line->morphs.end(), [](const MorphTarget& m) { return m.name == "squintLeft"; });
     ASSERT_NE(squint, line->morphs.end());
     float up = 0;

@@ -74,8 +74,9 @@ TEST_F(SceneModel, theHeadHasItsPartsMorphsAndTextures) {
     ASSERT_TRUE(head) << head.error().message;
     std::set<std::string> names;
     for (const ModelPart& part : head->parts) names.insert(part.name);
-    EXPECT_EQ(names, (std::set<std::string>{"skin", "eyeLeft", "eyeRight", "caruncleLeft", "caruncleRight", "lashesLeft", "lashesRight",
-                                            "corneaLeft", "corneaRight"}));
+    EXPECT_EQ(names,
+              (std::set<std::string>{"skin", "eyeLeft", "eyeRight", "caruncleLeft", "caruncleRight", "lashesLeft", "lashesRight",
+                                     "lashDropsLeft", "lashDropsRight", "corneaLeft", "corneaRight", "teeth", "tongue", "brows", "hair"}));
     const ModelPart& skin = *head->find("skin");
     ASSERT_EQ(skin.morphs.size(), 11U);
     EXPECT_EQ(skin.morphs[0].name, "blinkLeft");

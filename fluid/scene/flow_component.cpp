@@ -13,7 +13,6 @@
 
 #include "engine/core/table.h"
 #include "engine/scene/import_model.h"
-#include "engine/scene/transform.h"
 #include "fluid/flow/unwrap.h"
 #include "fluid/scene/head_look.h"
 #include "fluid/scene/scene_file.h"
@@ -27,21 +26,6 @@ constexpr double kMicrolitre = 1.0e6;  // picolitres
 constexpr float kBrimStep = 6.0e-4F;   // m, between the places of a brim
 constexpr int kMostBrimPlaces = 400;
 constexpr size_t kMostEmitted = 4096;  // drops of one source in one step
-
-Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
-    Bounds all;
-    for (const ModelPart& part : model.parts)
-        for (const vec3& p : part.mesh.positions) all.add(transformPoint(world[static_cast<size_t>(part.node)], p));
-    return all;
-}
-
-// Transforms a part into the model's frame: positions, normals, morphs.
-void place(ModelPart& part, const mat4& to) {
-    part.mesh = transformed(part.mesh, to);
-    for (MorphTarget& morph : part.morphs)
-        for (vec3& offset : morph.offsets) offset = mat3(to) * offset;
-    for (Bone& bone : part.bones) bone.fromMesh = bone.fromMesh * glm::inverse(to);
-}
 
 vec3 along(const std::vector<vec3>& line, float way) {
     for (size_t k = 1; k < line.size(); ++k) {
@@ -128,61 +112,32 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     c.params_ = params;
     c.device_ = &device;
     c.log_ = log;
-    Result<std::string> path = findAsset(params.mesh, sceneFolder);
-    if (!path) return path.error();
-    Result<Model> model = importModel(*path);
-    if (!model) return model.error();
-    const std::vector<mat4> world = model->worldMatrices();
-    const Bounds all = boundsOf(*model, world);
-    const Transform asked{params.position, params.rotation, params.scale};
-    mat4 to = params.fitSize > 0 ? Transform::fitted(all, params.fitSize, params.position, params.rotation) : asked.matrix();
-    to = glm::translate(mat4(1.0F), -params.position) * to;
-    for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
-    if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
-    if (Status marked = c.readMarks(*path, sceneFolder, to); !marked) return marked.error();
-    Result<ModelPart*> skin = c.skinOf(*model);
-    if (!skin) return skin.error();
-    if (Status laid = c.layOut(**skin, log); !laid) return laid.error();
-    if (Status added = c.addParts(*model, *skin, scene); !added) return added.error();
-    if (Status ready = c.prepareFlow((*skin)->mesh); !ready) return ready.error();
-    if (Status masked = c.readRegions(sceneFolder, (*skin)->mesh); !masked) return masked.error();
+    Result<SkinModel> loaded = loadSkinModel(params, sceneFolder);
+    if (!loaded) return loaded.error();
+    if (Status marked = c.takeMarks(*loaded, sceneFolder); !marked) return marked.error();
+    Model& model = loaded->model;
+    if (Status dressed = dressHead(model, fs::path(loaded->path).parent_path().string()); !dressed) return dressed.error();
+    ModelPart& skin = model.parts[loaded->skin];
+    if (Status laid = c.layOut(skin, log); !laid) return laid.error();
+    if (Status added = c.addParts(model, &skin, scene); !added) return added.error();
+    if (Status ready = c.prepareFlow(skin.mesh); !ready) return ready.error();
+    if (Status masked = c.readRegions(sceneFolder, skin.mesh); !masked) return masked.error();
     c.apply(params);
     c.placeNode(scene);
     return made;
 }
 
-Status FlowComponent::readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& to) {
-    std::string path = params_.marks;
-    if (path.empty()) {
-        fs::path beside(meshPath);
-        beside.replace_extension(".json");
-        std::error_code ignored;
-        if (!fs::exists(beside, ignored)) beside = beside.parent_path() / "landmarks.json";
-        if (!fs::exists(beside, ignored)) return ok();
-        path = beside.string();
-    } else {
-        Result<std::string> found = findAsset(path, sceneFolder);
-        if (!found) return found.error();
-        path = *found;
-    }
-    Result<FaceMarks> marks = readFaceMarks(path);
+Status FlowComponent::takeMarks(const SkinModel& skin, const std::string& sceneFolder) {
+    Result<SkinMarks> marks = skinMarks(params_, sceneFolder, skin, needsMarks(params_));
     if (!marks) return marks.error();
-    marks_ = *marks;
-    for (EyeMarks& eye : marks_.eyes) {
-        if (eye.tear) eye.tear = transformPoint(to, *eye.tear);
-        for (vec3& p : eye.lowerLid) p = transformPoint(to, p);
+    marks_ = marks->marks;
+    if (!marks->notice.empty()) log_.notice(marks->notice);
+    if (constexpr float kUpright = 0.7F; marks->found.found() && marks->found.up.y < kUpright) {
+        const vec3 turn = uprightRotation(params_, marks->found.up, marks->found.forward);
+        log_.notice(fmt::format("{} stands on its side or its head, and tears run down -Y: set its rotation to {}, {}, {}", params_.mesh,
+                                turn.x, turn.y, turn.z));
     }
     return ok();
-}
-
-Result<ModelPart*> FlowComponent::skinOf(Model& model) const {
-    if (model.parts.size() == 1) return model.parts.data();
-    std::vector<std::string> names;
-    for (ModelPart& part : model.parts) {
-        if (part.name == params_.part || part.materialName == params_.part) return &part;
-        names.push_back(part.materialName.empty() ? part.name : part.materialName);
-    }
-    return badInput(fmt::format("{} has no part `{}`; there are {}", params_.mesh, params_.part, fmt::join(names, ", ")));
 }
 
 // Usable UVs: the mesh's, or new ones, for which its vertices are split at the edges of charts.
@@ -293,8 +248,9 @@ std::vector<size_t> FlowComponent::eyesOf(const FlowSourceParams& source) const 
 std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
     if (source.kind != "corner" && source.kind != "brim") return {};
     if (eyesOf(source).empty())
-        return fmt::format("{} has no marks of {}: a source of kind {} needs marks; use spot, strewn or rain", params_.mesh,
-                           source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind);
+        return fmt::format(
+            "{} has no marks of {}: a source of kind {} needs marks; use spot, strewn or rain, or give `marks` (`rivulet flow-check {}`)",
+            params_.mesh, source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind, params_.mesh);
     constexpr float kMostOfAnEye = 1.0e5F;  // microlitres a minute
     if (source.rate > kMostOfAnEye)
         return fmt::format(
@@ -317,7 +273,7 @@ std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
         for (int k = 0; k < places; ++k) {
             const vec3 x = along(lid, length * (static_cast<float>(k) + 0.5F) / static_cast<float>(places));
             brim.places.push_back(nearestPoint(mesh, x));
-            brim.spills.push_back(nearestPoint(mesh, x + vec3(0.0F, -0.0025F, 0.0015F)));
+            brim.spills.push_back(nearestPoint(mesh, x - 0.0025F * marks_.up + 0.0015F * marks_.forward));
         }
         brimBegin_[side + 1] += static_cast<uint32_t>(places);
         emitted_ += uint64_t{brim.picolitres / static_cast<uint32_t>(places)} * static_cast<uint32_t>(places);

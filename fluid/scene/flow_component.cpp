@@ -128,7 +128,7 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
 }
 
 Status FlowComponent::takeMarks(const SkinModel& skin, const std::string& sceneFolder) {
-    Result<SkinMarks> marks = skinMarks(params_, sceneFolder, skin, needsMarks(params_));
+    Result<SkinMarks> marks = skinMarks(params_, sceneFolder, skin, needsMarks(params_) ? Seek::ifMarksAreMissing : Seek::never);
     if (!marks) return marks.error();
     marks_ = marks->marks;
     if (!marks->notice.empty()) log_.notice(marks->notice);

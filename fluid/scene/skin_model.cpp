@@ -32,7 +32,33 @@ void place(ModelPart& part, const mat4& to) {
     for (Bone& bone : part.bones) bone.fromMesh = bone.fromMesh * glm::inverse(to);
 }
 
-Result<size_t> skinOf(const Model& model, const FlowParams& params) {
+// The part that a person would call the skin: by its name, else the largest.
+size_t likelySkin(const Model& model) {
+    for (const char* word : {"skin", "face", "head", "body"})
+        for (size_t p = 0; p < model.parts.size(); ++p)
+            for (std::string name : {model.parts[p].name, model.parts[p].materialName}) {
+                std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+                const bool other = name.find("back") != std::string::npos || name.find("hair") != std::string::npos;
+                if (name.find(word) != std::string::npos && !other) return p;
+            }
+    size_t best = 0;
+    double most = -1;
+    for (size_t p = 0; p < model.parts.size(); ++p) {
+        const Mesh& m = model.parts[p].mesh;
+        double area = 0;
+        for (size_t t = 0; t + 2 < m.indices.size(); t += 3) {
+            const dvec3 a(m.positions[m.indices[t]]), b(m.positions[m.indices[t + 1]]), c(m.positions[m.indices[t + 2]]);
+            area += glm::length(glm::cross(b - a, c - a));
+        }
+        if (area > most) {
+            most = area;
+            best = p;
+        }
+    }
+    return best;
+}
+
+Result<size_t> skinOf(const Model& model, const FlowParams& params, SkinPart which) {
     if (model.parts.size() == 1) return size_t{0};
     std::vector<std::string> names;
     for (size_t p = 0; p < model.parts.size(); ++p) {
@@ -40,6 +66,7 @@ Result<size_t> skinOf(const Model& model, const FlowParams& params) {
         if (part.name == params.part || part.materialName == params.part) return p;
         names.push_back(part.materialName.empty() ? part.name : part.materialName);
     }
+    if (which == SkinPart::likely) return likelySkin(model);
     return badInput(fmt::format("{} has no part `{}`; there are {}", params.mesh, params.part, fmt::join(names, ", ")));
 }
 
@@ -72,7 +99,7 @@ std::string noticeOf(const FlowParams& params, const SkinMarks& m) {
 
 }  // namespace
 
-Result<SkinModel> loadSkinModel(const FlowParams& params, const std::string& sceneFolder) {
+Result<SkinModel> loadSkinModel(const FlowParams& params, const std::string& sceneFolder, SkinPart which) {
     SkinModel made;
     Result<std::string> path = findAsset(params.mesh, sceneFolder);
     if (!path) return path.error();
@@ -86,10 +113,17 @@ Result<SkinModel> loadSkinModel(const FlowParams& params, const std::string& sce
                                  : asked.matrix();
     made.to = glm::translate(mat4(1.0F), -params.position) * made.to;
     for (ModelPart& part : made.model.parts) place(part, made.to * world[static_cast<size_t>(part.node)]);
-    Result<size_t> skin = skinOf(made.model, params);
+    Result<size_t> skin = skinOf(made.model, params, which);
     if (!skin) return skin.error();
     made.skin = *skin;
     return made;
+}
+
+std::string partName(const Model& model, size_t part) {
+    const std::string& material = model.parts[part].materialName;
+    const auto same = std::count_if(model.parts.begin(), model.parts.end(),
+                                    [&](const ModelPart& p) { return p.name == material || p.materialName == material; });
+    return !material.empty() && same == 1 ? material : model.parts[part].name;
 }
 
 bool needsMarks(const FlowParams& params) {
@@ -97,7 +131,7 @@ bool needsMarks(const FlowParams& params) {
                        [](const FlowSourceParams& s) { return s.kind == "corner" || s.kind == "brim"; });
 }
 
-Result<SkinMarks> skinMarks(const FlowParams& params, const std::string& sceneFolder, const SkinModel& skin, bool seek) {
+Result<SkinMarks> skinMarks(const FlowParams& params, const std::string& sceneFolder, const SkinModel& skin, Seek seek) {
     SkinMarks m;
     Result<std::string> file = marksFile(params, sceneFolder, skin.path);
     if (!file) return file.error();
@@ -119,7 +153,7 @@ Result<SkinMarks> skinMarks(const FlowParams& params, const std::string& sceneFo
         m.lids[side] = eye.lowerLid.size() >= 2 ? MarkOf::file : MarkOf::none;
         all = all && m.tears[side] == MarkOf::file && m.lids[side] == MarkOf::file;
     }
-    if (all || !seek) return m;
+    if (seek == Seek::never || (seek == Seek::ifMarksAreMissing && all)) return m;
     m.found = findFace(skin.model.parts, skin.skin);
     if (m.found.found()) {
         const MarkOf how = m.found.by == FoundFace::By::proportions ? MarkOf::proportions : MarkOf::found;

@@ -18,8 +18,15 @@ struct SkinModel {
     size_t skin = 0;  // the part that the liquid runs over
 };
 
-// Error (badInput): a file that is missing or damaged, no part of the name.
-Result<SkinModel> loadSkinModel(const FlowParams& params, const std::string& sceneFolder);
+// Which part is the skin, of several. named: the one that the parameters name. likely: if there is none, one that is called skin, face,
+// head or body, else the largest.
+enum class SkinPart { named, likely };
+
+// Error (badInput): a file that is missing or damaged; SkinPart::named and no part of that name.
+Result<SkinModel> loadSkinModel(const FlowParams& params, const std::string& sceneFolder, SkinPart which = SkinPart::named);
+
+// The name by which `part` of a flow finds a part: its material's, if no other part has that, else its own.
+std::string partName(const Model& model, size_t part);
 
 // Where each mark comes from.
 enum class MarkOf { none, file, found, proportions };
@@ -33,9 +40,12 @@ struct SkinMarks {
     std::string notice;
 };
 
+// When a face is sought in the geometry.
+enum class Seek { never, ifMarksAreMissing, always };
+
 // Marks are read from the file that the flow names, or from the one beside the mesh: MESH.json or landmarks.json. What the file leaves out
-// is found from the geometry. `seek`: false: it is not sought. Error (badInput): the file that is named is missing; a file is damaged.
-Result<SkinMarks> skinMarks(const FlowParams& params, const std::string& sceneFolder, const SkinModel& skin, bool seek);
+// is found from the geometry. Error (badInput): the file that is named is missing; a file is damaged.
+Result<SkinMarks> skinMarks(const FlowParams& params, const std::string& sceneFolder, const SkinModel& skin, Seek seek);
 
 // True if a source of the flow needs marks.
 bool needsMarks(const FlowParams& params);

@@ -29,7 +29,7 @@ def options(verb):
     return said.stdout if said.returncode == 0 else None
 
 
-verbs = re.findall(r"^  (\w+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout, re.M)
+verbs = re.findall(r"^  ([\w-]+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout, re.M)
 helps = {verb: options(verb) for verb in verbs}
 if "run" not in helps or not all(helps.values()):
     sys.exit(f"{program} --help names verbs that have no --help: {helps.keys()}")

@@ -15,6 +15,7 @@
 #include "engine/scene/import_model.h"
 #include "fluid/flow/unwrap.h"
 #include "fluid/scene/head_look.h"
+#include "fluid/scene/move_pictures.h"
 #include "fluid/scene/scene_file.h"
 
 namespace rivulet {
@@ -50,13 +51,15 @@ bool named(std::string_view list, const ModelPart& part) {
     return false;
 }
 
-// Splits vertices, so that each has one UV of `uvs` (3 per triangle of `mesh`, which was made from the part).
-void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
+// Splits vertices, so that each has one UV of `uvs` (3 per triangle of `mesh`, which was made from the part). Returns the old vertex of
+// each.
+std::vector<uint32_t> split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
     Mesh fresh;
     fresh.name = part.mesh.name;
     std::map<std::tuple<uint32_t, float, float>, uint32_t> known;
     std::vector<std::vector<uint32_t>> become(part.mesh.positions.size());
     std::vector<Grip> grips;
+    std::vector<uint32_t> old;
     for (size_t t = 0; t < mesh.triangleCount(); ++t)
         for (size_t k = 0; k < 3; ++k) {
             uint32_t from = mesh.given[mesh.corner[3 * t + k]];
@@ -72,6 +75,7 @@ void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) 
                 fresh.uvs.push_back(uv);
                 if (!part.grips.empty()) grips.push_back(part.grips[from]);
                 become[from].push_back(at->second);
+                old.push_back(from);
             }
             fresh.indices.push_back(at->second);
         }
@@ -89,6 +93,7 @@ void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) 
     }
     part.mesh = std::move(fresh);
     part.grips = std::move(grips);
+    return old;
 }
 
 // Returns two directions perpendicular to the unit vector `n`.
@@ -149,7 +154,13 @@ Status FlowComponent::layOut(ModelPart& skin, const Log& log) {
     if (!uvs) return badInput(fmt::format("{}: {}", params_.mesh, uvs.error().message));
     if (!uvs->notice.empty()) log.notice(fmt::format("{}: {}", params_.mesh, uvs->notice));
     if (uvs->unwrapped) {
-        split(skin, *mesh, uvs->uvs);
+        const std::vector<vec2> given = cornerUvs(*mesh, skin.mesh.view());
+        if (!given.empty()) {
+            if (movePictures(skin.material, given, uvs->uvs, std::clamp(params_.mapSize, 256, 2048)))
+                log.notice(fmt::format("{}: its pictures were drawn anew on the new UVs; a normal map is left out", params_.mesh));
+            maskUvs_ = std::move(skin.mesh.uvs);  // of the vertices before the split
+        }
+        maskOf_ = split(skin, *mesh, uvs->uvs);
         mesh = makeFlowMesh(skin.mesh.view());
         if (!mesh) return mesh.error();
     }
@@ -291,12 +302,19 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
         const Result<std::shared_ptr<const Image>> read = importImage(*path);
         if (!read) return read.error();
         const Image& mask = **read;
-        if (skin.uvs.empty())
-            return badInput(fmt::format("{} has no UVs, so the mask {} cannot be used", params_.mesh, params_.regions.mask));
+        // A mask lies over the UVs of the file.
+        std::vector<vec2> uvs = skin.uvs;
+        if (!maskOf_.empty()) {
+            uvs.clear();
+            for (const uint32_t v : maskOf_)
+                if (v < maskUvs_.size()) uvs.push_back(maskUvs_[v]);
+        }
+        if (uvs.empty()) return badInput(fmt::format("{} has no UVs, so the mask {} cannot be used", params_.mesh, params_.regions.mask));
         std::vector<float> grip;
         grip.reserve(mesh.rest.size());
         for (size_t p = 0; p < mesh.rest.size(); ++p) {
-            const vec2 uv = skin.uvs[mesh.given[p]] - glm::floor(skin.uvs[mesh.given[p]]);
+            vec2 uv = uvs[mesh.given[p]] - glm::floor(uvs[mesh.given[p]]);
+            if (!std::isfinite(uv.x + uv.y)) uv = vec2(0.0F);
             const auto x = std::min(static_cast<size_t>(uv.x * static_cast<float>(mask.width)), static_cast<size_t>(mask.width) - 1);
             const auto y = std::min(static_cast<size_t>(uv.y * static_cast<float>(mask.height)), static_cast<size_t>(mask.height) - 1);
             const uint8_t* texel = &mask.rgba[4 * (y * static_cast<size_t>(mask.width) + x)];

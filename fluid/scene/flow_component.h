@@ -92,6 +92,9 @@ class FlowComponent {
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: the skin does not deform
     std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps are made; kept in mode thesis
+    // Of a skin with new UVs: the file's, of its vertices, and the file's vertex of each that the skin has now.
+    std::vector<vec2> maskUvs_;
+    std::vector<uint32_t> maskOf_;
     std::optional<SurfaceFlow> flow_;
     std::optional<FlowMaps> maps_;
     ThesisPicture picture_;

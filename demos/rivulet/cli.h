@@ -29,6 +29,7 @@ Table<Verb> verbs();
 int runVerb(const Arguments& arguments);
 int listVerb(const Arguments& arguments);
 int infoVerb(const Arguments& arguments);
+int flowCheckVerb(const Arguments& arguments);
 int voxelizeVerb(const Arguments& arguments);
 int benchVerb(const Arguments& arguments);
 int validateVerb(const Arguments& arguments);

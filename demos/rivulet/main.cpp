@@ -28,6 +28,7 @@ Table<Verb> verbs() {
         {"list", "list the scenes, methods, liquids, renderers, devices and parameters", listVerb},
         {"info", "show the CPU, OpenGL and OpenCL of this machine, and which backend auto selects", infoVerb},
         {"voxelize", "convert a mesh to voxels and write them to a file", voxelizeVerb},
+        {"flow-check", "say what a head's mesh needs to carry tears, and find its eyes and lids", flowCheckVerb},
         {"bench", "measure speed and memory use", benchVerb},
         {"validate", "compare the simulation with experiments, published data and analytic solutions", validateVerb},
         {"chart", "measure speed against accuracy for all methods and write the result as a page", chartVerb},
@@ -41,7 +42,7 @@ namespace {
 std::string helpText() {
     std::string text =
         fmt::format("rivulet {}: real-time water for OpenGL\n\nUsage: rivulet VERB [arguments]\n\nVerbs:\n", RIVULET_VERSION);
-    for (const Verb& verb : verbs().rows) text += fmt::format("  {:<10}{}\n", verb.name, verb.doc);
+    for (const Verb& verb : verbs().rows) text += fmt::format("  {:<12}{}\n", verb.name, verb.doc);
     return text +
            "\nRun 'rivulet VERB --help' for the arguments of a verb.\nStart with 'rivulet list scenes', then 'rivulet run dam_break'.\n";
 }

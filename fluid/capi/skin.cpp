@@ -1,12 +1,14 @@
 // rivulet.h: skins.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/json.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
+#include "fluid/flow/unwrap.h"
 #include "fluid/sim/world/contradictions.h"
 
 using namespace rivulet;
@@ -29,11 +31,17 @@ Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivul
     if (!cleaned) return cleaned.error();
     if (const std::string found = cleaned->report.sentence(); !found.empty()) context.log.notice("mesh: " + found);
     const std::vector<vec2> uvs = cornerUvs(*cleaned, mesh->view());
+    const int size = o.map_size == 0 ? 1024 : o.map_size;
+    // The texture is drawn over the host's UVs, so that new ones would be of no use to it: it is told what is wrong.
+    if (const UvReport report = checkUvs(*cleaned, uvs, std::clamp(size, 256, 2048)); !report.usable())
+        context.log.notice(fmt::format(
+            "mesh.uvs: {} The texture shows less than the skin carries there; give UVs whose charts do not overlap, such as those of "
+            "skinUvs (fluid/flow/unwrap.h) or of a modelling program",
+            report.sentence()));
     Result<SurfaceFlow> flow = SurfaceFlow::create(*context.device, std::move(*cleaned), params);
     if (!flow) return flow.error();
     s.flow.emplace(std::move(*flow));
     s.vertices = mesh->positions.size();
-    const int size = o.map_size == 0 ? 1024 : o.map_size;
     Result<FlowMaps> maps = FlowMaps::create(*s.flow, uvs, size);
     if (!maps) return maps.error();
     s.maps.emplace(std::move(*maps));

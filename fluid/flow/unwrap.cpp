@@ -300,6 +300,24 @@ bool pack(const std::vector<Chart>& charts, double scale, int size, int gutter, 
 
 }  // namespace
 
+namespace {
+
+// How a triangle lies on the map: the edge of its texels on the skin, m, and how much longer than wide they are.
+struct TexelShape {
+    double edge = 0, longer = 1;
+};
+TexelShape texelShape(const FlowMesh& m, size_t t, const UvTriangle& f) {
+    const dvec3 e1 = place(m, 3 * t + 1) - place(m, 3 * t), e2 = place(m, 3 * t + 2) - place(m, 3 * t);
+    const dvec2 f1 = f.p[1] - f.p[0], f2 = f.p[2] - f.p[0];
+    // Of the map from texels to the skin: the product of its singular values, and half the sum of their squares over it.
+    const double product = glm::length(glm::cross(e1, e2)) / std::abs(f.area);
+    const dvec3 x = (e1 * f2.y - e2 * f1.y) / f.area, y = (e2 * f1.x - e1 * f2.x) / f.area;
+    const double mean = product > 0 ? std::max(0.5 * (glm::dot(x, x) + glm::dot(y, y)) / product, 1.0) : 1.0;
+    return {std::sqrt(product), mean + std::sqrt(mean * mean - 1)};
+}
+
+}  // namespace
+
 bool UvReport::usable() const { return !missing && lost <= kMostLost && overlap <= kMostOverlap; }
 
 std::string UvReport::sentence() const {
@@ -325,7 +343,9 @@ UvReport checkUvs(const FlowMesh& mesh, std::span<const vec2> uvs, int size) {
     ASSERT(uvs.size() == mesh.corner.size(), "give each corner of each triangle its own UV");
     std::vector<uint8_t> owned(static_cast<size_t>(size) * static_cast<size_t>(size), 0);
     size_t claims = 0, owns = 0;
-    double area = 0, lost = 0;
+    double area = 0, lost = 0, stretched = 0;
+    std::vector<std::pair<double, double>> texels;  // edge, area of the triangle
+    constexpr double kStretched = 4;
     for (size_t t = 0; t < mesh.triangleCount(); ++t) {
         const std::span<const vec2> uv = uvs.subspan(3 * t, 3);
         const UvTriangle f = uvTriangle(uv, size);
@@ -340,6 +360,9 @@ UvReport checkUvs(const FlowMesh& mesh, std::span<const vec2> uvs, int size) {
             lost += own;
             continue;
         }
+        const TexelShape shape = texelShape(mesh, t, f);
+        texels.emplace_back(shape.edge, own);
+        stretched += shape.longer > kStretched ? own : 0;
         r.mirrored += f.area < 0 ? 1 : 0;
         r.beyond +=
             std::any_of(uv.begin(), uv.end(), [](const vec2& p) { return std::min(p.x, p.y) < 0 || std::max(p.x, p.y) > 1; }) ? 1 : 0;
@@ -352,6 +375,14 @@ UvReport checkUvs(const FlowMesh& mesh, std::span<const vec2> uvs, int size) {
         });
     }
     r.lost = area > 0 ? lost / area : 1;
+    r.stretched = area > 0 ? stretched / area : 0;
+    std::sort(texels.begin(), texels.end());
+    double below = 0;
+    for (const auto& [edge, own] : texels) {
+        if (below < 0.5 * (area - lost)) r.texel = edge;
+        if (below < 0.95 * (area - lost)) r.widest = edge;
+        below += own;
+    }
     r.overlap = claims > 0 ? 1 - static_cast<double>(owns) / static_cast<double>(claims) : 0;
     return r;
 }
@@ -413,6 +444,7 @@ Result<SkinUvs> skinUvs(const FlowMesh& mesh, const MeshView& from, int size) {
     if (!own) return own.error();
     s.uvs = std::move(own->uvs);
     s.unwrapped = true;
+    s.charts = own->charts;
     s.notice += fmt::format(" New UVs were made, with {} chart{}.", own->charts, own->charts == 1 ? "" : "s");
     return s;
 }

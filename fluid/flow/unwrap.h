@@ -21,6 +21,8 @@ struct UvReport {
     size_t beyond = 0;             // with a corner outside 0 to 1: not a fault, they wrap round
     double overlap = 0;            // share of the covered texels that more than one triangle covers
     double lost = 0;               // share of the skin's area without texels of its own, for any reason but the last two
+    double stretched = 0;          // share of the skin's area whose texels are more than 4 times as long as wide: not a fault
+    double texel = 0, widest = 0;  // m, edge of a texel on the skin: the median over its area, and what 95 % of it does not exceed
     bool usable() const;           // little is lost and little overlaps
     std::string sentence() const;  // "" where nothing is wrong
 };
@@ -42,7 +44,8 @@ struct SkinUvs {
     std::vector<vec2> uvs;  // 3 a triangle
     UvReport given;
     bool unwrapped = false;
-    std::string notice;  // a sentence for the log, or ""
+    uint32_t charts = 0;  // of the new ones
+    std::string notice;   // a sentence for the log, or ""
 };
 Result<SkinUvs> skinUvs(const FlowMesh& mesh, const MeshView& from, int size = 1024);
 

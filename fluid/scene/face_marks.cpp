@@ -65,6 +65,19 @@ Status readOwn(const Reader& r, const Json::Value& eyes, FaceMarks& marks) {
     return ok();
 }
 
+Status readAxis(const Reader& r, const Json::Value& root, const char* key, vec3& axis) {
+    if (!root.isMember(key)) return ok();
+    Result<vec3> given = r.point(root[key], 1);
+    if (!given) return given.error();
+    const float length = glm::length(*given);
+    if (!(length > 0) || !std::isfinite(length)) return r.wrong(root[key], "a direction with a length is needed");
+    axis = *given / length;
+    return ok();
+}
+
+// Six digits: a tenth of a micrometre on a head in m.
+std::string numbersOf(const vec3& p) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", p.x, p.y, p.z); }
+
 Status readLandmarks(const Reader& r, const Json::Value& points, FaceMarks& marks) {
     for (const auto& [side, at] : {std::pair("left", size_t{0}), std::pair("right", size_t{1})}) {
         for (const char* where : {"inner_corner", "lower_lid_inner_third", "lower_lid_outer_third", "outer_corner"}) {
@@ -92,11 +105,32 @@ Result<FaceMarks> readFaceMarks(const std::string& path) {
     const Json::Value& root = *tree;
     if (root.isObject() && root["eyes"].isObject()) {
         if (Status read = readOwn(reader, root["eyes"], marks); !read) return read.error();
+        for (const auto& [key, axis] : {std::pair("up", &marks.up), std::pair("forward", &marks.forward)})
+            if (Status read = readAxis(reader, root, key, *axis); !read) return read.error();
     } else if (root.isObject() && root["tear_points"].isObject()) {
         if (Status read = readLandmarks(reader, root["tear_points"], marks); !read) return read.error();
     } else
         return badInput(fmt::format("{}: has neither `eyes` nor `tear_points`: it marks no face", path));
     return marks;
+}
+
+std::string faceMarksText(const FaceMarks& marks) {
+    std::string text =
+        fmt::format("{{\n  \"up\": {},\n  \"forward\": {},\n  \"eyes\": {{\n", numbersOf(marks.up), numbersOf(marks.forward));
+    for (size_t side = 0; side < 2; ++side) {
+        const EyeMarks& eye = marks.eyes[side];
+        std::vector<std::string> keys;
+        if (eye.tear) keys.push_back(fmt::format("\"tear\": {{\"position\": {}}}", numbersOf(*eye.tear)));
+        if (!eye.lowerLid.empty()) {
+            std::string lid;
+            for (const vec3& p : eye.lowerLid) lid += fmt::format("{}\n        {}", lid.empty() ? "" : ",", numbersOf(p));
+            keys.push_back(fmt::format("\"lower_lid_margin\": [{}\n      ]", lid));
+        }
+        text += fmt::format("    \"{}\": {{", side == 0 ? "left" : "right");
+        for (size_t k = 0; k < keys.size(); ++k) text += fmt::format("{}\n      {}", k > 0 ? "," : "", keys[k]);
+        text += fmt::format("\n    }}{}\n", side == 0 ? "," : "");
+    }
+    return text + "  }\n}\n";
 }
 
 }  // namespace rivulet

@@ -13,9 +13,9 @@
 
 #include "engine/core/table.h"
 #include "engine/scene/import_model.h"
-#include "engine/scene/transform.h"
 #include "fluid/flow/unwrap.h"
 #include "fluid/scene/head_look.h"
+#include "fluid/scene/move_pictures.h"
 #include "fluid/scene/scene_file.h"
 
 namespace rivulet {
@@ -29,21 +29,6 @@ constexpr int kMostBrimPlaces = 400;
 constexpr const char* kBrimMorphs[] = {"brimLeft", "brimRight"};
 constexpr double kReddened = 20 * kMicrolitre;  // of tears, after which eyes are about as red as they become
 constexpr size_t kMostEmitted = 4096;           // drops of one source in one step
-
-Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
-    Bounds all;
-    for (const ModelPart& part : model.parts)
-        for (const vec3& p : part.mesh.positions) all.add(transformPoint(world[static_cast<size_t>(part.node)], p));
-    return all;
-}
-
-// Transforms a part into the model's frame: positions, normals, morphs.
-void place(ModelPart& part, const mat4& to) {
-    part.mesh = transformed(part.mesh, to);
-    for (MorphTarget& morph : part.morphs)
-        for (vec3& offset : morph.offsets) offset = mat3(to) * offset;
-    for (Bone& bone : part.bones) bone.fromMesh = bone.fromMesh * glm::inverse(to);
-}
 
 vec3 along(const std::vector<vec3>& line, float way) {
     for (size_t k = 1; k < line.size(); ++k) {
@@ -68,13 +53,15 @@ bool named(std::string_view list, const ModelPart& part) {
     return false;
 }
 
-// Splits vertices, so that each has one UV of `uvs` (3 per triangle of `mesh`, which was made from the part).
-void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
+// Splits vertices, so that each has one UV of `uvs` (3 per triangle of `mesh`, which was made from the part). Returns the old vertex of
+// each.
+std::vector<uint32_t> split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
     Mesh fresh;
     fresh.name = part.mesh.name;
     std::map<std::tuple<uint32_t, float, float>, uint32_t> known;
     std::vector<std::vector<uint32_t>> become(part.mesh.positions.size());
     std::vector<Grip> grips;
+    std::vector<uint32_t> old;
     for (size_t t = 0; t < mesh.triangleCount(); ++t)
         for (size_t k = 0; k < 3; ++k) {
             uint32_t from = mesh.given[mesh.corner[3 * t + k]];
@@ -90,6 +77,7 @@ void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) 
                 fresh.uvs.push_back(uv);
                 if (!part.grips.empty()) grips.push_back(part.grips[from]);
                 become[from].push_back(at->second);
+                old.push_back(from);
             }
             fresh.indices.push_back(at->second);
         }
@@ -107,6 +95,7 @@ void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) 
     }
     part.mesh = std::move(fresh);
     part.grips = std::move(grips);
+    return old;
 }
 
 // Returns two directions perpendicular to the unit vector `n`.
@@ -147,62 +136,33 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     c.params_ = params;
     c.device_ = &device;
     c.log_ = log;
-    Result<std::string> path = findAsset(params.mesh, sceneFolder);
-    if (!path) return path.error();
-    Result<Model> model = importModel(*path);
-    if (!model) return model.error();
-    const std::vector<mat4> world = model->worldMatrices();
-    const Bounds all = boundsOf(*model, world);
-    const Transform asked{params.position, params.rotation, params.scale};
-    mat4 to = params.fitSize > 0 ? Transform::fitted(all, params.fitSize, params.position, params.rotation) : asked.matrix();
-    to = glm::translate(mat4(1.0F), -params.position) * to;
-    for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
-    if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
-    if (Status marked = c.readMarks(*path, sceneFolder, to); !marked) return marked.error();
-    Result<ModelPart*> skin = c.skinOf(*model);
-    if (!skin) return skin.error();
-    if (Status laid = c.layOut(**skin, log); !laid) return laid.error();
-    if (Status added = c.addParts(*model, *skin, scene); !added) return added.error();
-    if (Status ready = c.prepareFlow((*skin)->mesh); !ready) return ready.error();
+    Result<SkinModel> loaded = loadSkinModel(params, sceneFolder);
+    if (!loaded) return loaded.error();
+    if (Status marked = c.takeMarks(*loaded, sceneFolder); !marked) return marked.error();
+    Model& model = loaded->model;
+    if (Status dressed = dressHead(model, fs::path(loaded->path).parent_path().string()); !dressed) return dressed.error();
+    ModelPart& skin = model.parts[loaded->skin];
+    if (Status laid = c.layOut(skin, log); !laid) return laid.error();
+    if (Status added = c.addParts(model, &skin, scene); !added) return added.error();
+    if (Status ready = c.prepareFlow(skin.mesh); !ready) return ready.error();
     c.lookIntoLids();
-    if (Status masked = c.readRegions(sceneFolder, (*skin)->mesh); !masked) return masked.error();
+    if (Status masked = c.readRegions(sceneFolder, skin.mesh); !masked) return masked.error();
     c.apply(params);
     c.placeNode(scene);
     return made;
 }
 
-Status FlowComponent::readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& to) {
-    std::string path = params_.marks;
-    if (path.empty()) {
-        fs::path beside(meshPath);
-        beside.replace_extension(".json");
-        std::error_code ignored;
-        if (!fs::exists(beside, ignored)) beside = beside.parent_path() / "landmarks.json";
-        if (!fs::exists(beside, ignored)) return ok();
-        path = beside.string();
-    } else {
-        Result<std::string> found = findAsset(path, sceneFolder);
-        if (!found) return found.error();
-        path = *found;
-    }
-    Result<FaceMarks> marks = readFaceMarks(path);
+Status FlowComponent::takeMarks(const SkinModel& skin, const std::string& sceneFolder) {
+    Result<SkinMarks> marks = skinMarks(params_, sceneFolder, skin, needsMarks(params_) ? Seek::ifMarksAreMissing : Seek::never);
     if (!marks) return marks.error();
-    marks_ = *marks;
-    for (EyeMarks& eye : marks_.eyes) {
-        if (eye.tear) eye.tear = transformPoint(to, *eye.tear);
-        for (vec3& p : eye.lowerLid) p = transformPoint(to, p);
+    marks_ = marks->marks;
+    if (!marks->notice.empty()) log_.notice(marks->notice);
+    if (constexpr float kUpright = 0.7F; marks->found.found() && marks->found.up.y < kUpright) {
+        const vec3 turn = uprightRotation(params_, marks->found.up, marks->found.forward);
+        log_.notice(fmt::format("{} stands on its side or its head, and tears run down -Y: set its rotation to {}, {}, {}", params_.mesh,
+                                turn.x, turn.y, turn.z));
     }
     return ok();
-}
-
-Result<ModelPart*> FlowComponent::skinOf(Model& model) const {
-    if (model.parts.size() == 1) return model.parts.data();
-    std::vector<std::string> names;
-    for (ModelPart& part : model.parts) {
-        if (part.name == params_.part || part.materialName == params_.part) return &part;
-        names.push_back(part.materialName.empty() ? part.name : part.materialName);
-    }
-    return badInput(fmt::format("{} has no part `{}`; there are {}", params_.mesh, params_.part, fmt::join(names, ", ")));
 }
 
 // Usable UVs: the mesh's, or new ones, for which its vertices are split at the edges of charts.
@@ -214,7 +174,13 @@ Status FlowComponent::layOut(ModelPart& skin, const Log& log) {
     if (!uvs) return badInput(fmt::format("{}: {}", params_.mesh, uvs.error().message));
     if (!uvs->notice.empty()) log.notice(fmt::format("{}: {}", params_.mesh, uvs->notice));
     if (uvs->unwrapped) {
-        split(skin, *mesh, uvs->uvs);
+        const std::vector<vec2> given = cornerUvs(*mesh, skin.mesh.view());
+        if (!given.empty()) {
+            if (movePictures(skin.material, given, uvs->uvs, std::clamp(params_.mapSize, 256, 2048)))
+                log.notice(fmt::format("{}: its pictures were drawn anew on the new UVs; a normal map is left out", params_.mesh));
+            maskUvs_ = std::move(skin.mesh.uvs);  // of the vertices before the split
+        }
+        maskOf_ = split(skin, *mesh, uvs->uvs);
         mesh = makeFlowMesh(skin.mesh.view());
         if (!mesh) return mesh.error();
     }
@@ -317,8 +283,9 @@ std::vector<size_t> FlowComponent::eyesOf(const FlowSourceParams& source) const 
 std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
     if (source.kind != "corner" && source.kind != "brim") return {};
     if (eyesOf(source).empty())
-        return fmt::format("{} has no marks of {}: a source of kind {} needs marks; use spot, strewn or rain", params_.mesh,
-                           source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind);
+        return fmt::format(
+            "{} has no marks of {}: a source of kind {} needs marks; use spot, strewn or rain, or give `marks` (`rivulet flow-check {}`)",
+            params_.mesh, source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind, params_.mesh);
     constexpr float kMostOfAnEye = 1.0e5F;  // microlitres a minute
     if (source.rate > kMostOfAnEye)
         return fmt::format(
@@ -341,7 +308,7 @@ std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
         for (int k = 0; k < places; ++k) {
             const vec3 x = along(lid, length * (static_cast<float>(k) + 0.5F) / static_cast<float>(places));
             brim.places.push_back(nearestPoint(mesh, x));
-            brim.spills.push_back(nearestPoint(mesh, x + vec3(0.0F, -0.0025F, 0.0015F)));
+            brim.spills.push_back(nearestPoint(mesh, x - 0.0025F * marks_.up + 0.0015F * marks_.forward));
         }
         brimBegin_[side + 1] += static_cast<uint32_t>(places);
         emitted_ += uint64_t{brim.picolitres / static_cast<uint32_t>(places)} * static_cast<uint32_t>(places);
@@ -359,12 +326,19 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
         const Result<std::shared_ptr<const Image>> read = importImage(*path);
         if (!read) return read.error();
         const Image& mask = **read;
-        if (skin.uvs.empty())
-            return badInput(fmt::format("{} has no UVs, so the mask {} cannot be used", params_.mesh, params_.regions.mask));
+        // A mask lies over the UVs of the file.
+        std::vector<vec2> uvs = skin.uvs;
+        if (!maskOf_.empty()) {
+            uvs.clear();
+            for (const uint32_t v : maskOf_)
+                if (v < maskUvs_.size()) uvs.push_back(maskUvs_[v]);
+        }
+        if (uvs.empty()) return badInput(fmt::format("{} has no UVs, so the mask {} cannot be used", params_.mesh, params_.regions.mask));
         std::vector<float> grip;
         grip.reserve(mesh.rest.size());
         for (size_t p = 0; p < mesh.rest.size(); ++p) {
-            const vec2 uv = skin.uvs[mesh.given[p]] - glm::floor(skin.uvs[mesh.given[p]]);
+            vec2 uv = uvs[mesh.given[p]] - glm::floor(uvs[mesh.given[p]]);
+            if (!std::isfinite(uv.x + uv.y)) uv = vec2(0.0F);
             const auto x = std::min(static_cast<size_t>(uv.x * static_cast<float>(mask.width)), static_cast<size_t>(mask.width) - 1);
             const auto y = std::min(static_cast<size_t>(uv.y * static_cast<float>(mask.height)), static_cast<size_t>(mask.height) - 1);
             const uint8_t* texel = &mask.rgba[4 * (y * static_cast<size_t>(mask.width) + x)];

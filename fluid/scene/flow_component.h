@@ -12,8 +12,8 @@
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/placed_flow.h"
-#include "fluid/scene/face_marks.h"
 #include "fluid/scene/flow_params.h"
+#include "fluid/scene/skin_model.h"
 
 namespace rivulet {
 
@@ -68,11 +68,10 @@ class FlowComponent {
     FlowComponent() = default;
     bool thesis() const { return params_.mode == "thesis"; }
     void drawThesis();
-    Result<ModelPart*> skinOf(Model& model) const;
     Status layOut(ModelPart& skin, const Log& log);
     Status addParts(Model& model, const ModelPart* skin, Scene& scene);
     Status prepareFlow(const Mesh& skin);
-    Status readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& place);
+    Status takeMarks(const SkinModel& skin, const std::string& sceneFolder);
     std::vector<SkinBrim> brims(const FlowMesh& mesh);
     Status readRegions(const std::string& sceneFolder, const Mesh& skin);
     void bend(double time);
@@ -100,6 +99,9 @@ class FlowComponent {
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: the skin does not deform
     std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps are made; kept in mode thesis
+    // Of a skin with new UVs: the file's, of its vertices, and the file's vertex of each that the skin has now.
+    std::vector<vec2> maskUvs_;
+    std::vector<uint32_t> maskOf_;
     std::optional<SurfaceFlow> flow_;
     std::optional<FlowMaps> maps_;
     ThesisPicture picture_;

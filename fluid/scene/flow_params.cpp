@@ -110,9 +110,10 @@ void FlowParams::visit(ParamVisitor& v) {
     v.value(
         {.name = "skinParts", .doc = "parts with the skin material, in the same form; the default head has its own list", .fixed = kFixed},
         skinParts);
-    v.value(
-        {.name = "marks", .doc = "JSON file of a face's eyes and lids; none = the file beside the mesh, if there is one", .fixed = kFixed},
-        marks);
+    v.value({.name = "marks",
+             .doc = "JSON file of a face's eyes and lids; none = the file beside the mesh, if there is one; what it lacks is found",
+             .fixed = kFixed},
+            marks);
     v.value({"position", "m", "position of the mesh's origin (with fitSize: of its centre)", -kFar, kFar, kLinear, kFixed}, position);
     v.value({"rotation", "deg", "rotation about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
     v.value({"scale", "", "scale factor of the mesh: the unit of its file in m", 1.0e-6, 1.0e6, kLog, kFixed}, scale);

@@ -62,7 +62,7 @@ struct FlowParams {
     std::string instead;        // JSON file of another skin, used instead if its mesh is found; "" = none
     std::string hide;           // parts that are not drawn, by name or material, separated by ", "; a name may end in *
     std::string skinParts;      // parts with the skin material, as `hide`; the default head has its own list
-    std::string marks;          // JSON with eyes, lids and the starts of tears; "" = the file next to the mesh, if it exists
+    std::string marks;          // JSON with eyes, lids and the starts of tears; "" = the file next to the mesh, or found
     vec3 position{0.0F};        // m
     vec3 rotation{0.0F};        // deg
     float scale = 1;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <glm/matrix.hpp>
 
 #include "engine/scene/import_model.h"
+#include "fluid/scene/ball_fit.h"
 
 namespace rivulet {
 namespace {
@@ -14,26 +14,6 @@ constexpr int kHairs = 5, kBrowHairs = 2;  // on a ribbon
 constexpr float kHairWidth = 0.4F;         // of its part of the ribbon
 constexpr std::string_view kTearLine = "tearLine";
 constexpr vec3 kTint(0.93F, 1.0F, 1.15F);  // the painted skin is warmer than skin is
-
-// |x|^2 = 2 c . x + (r^2 - |c|^2), least squares about the mean. False where the points lie in a plane.
-bool fitSphere(const std::vector<vec3>& points, vec3& centre, float& radius) {
-    if (points.size() < 4) return false;
-    glm::dvec3 mean(0.0), right(0.0);
-    for (const vec3& p : points) mean += glm::dvec3(p) / static_cast<double>(points.size());
-    glm::dmat3 spread(0.0);
-    double square = 0;
-    for (const vec3& p : points) square += glm::dot(glm::dvec3(p) - mean, glm::dvec3(p) - mean) / static_cast<double>(points.size());
-    for (const vec3& p : points) {
-        const glm::dvec3 x = glm::dvec3(p) - mean;
-        spread += glm::outerProduct(x, x);
-        right += 0.5 * x * (glm::dot(x, x) - square);
-    }
-    if (std::abs(glm::determinant(spread)) < 1e-30) return false;
-    const glm::dvec3 c = glm::inverse(spread) * right;
-    centre = vec3(c + mean);
-    radius = static_cast<float>(std::sqrt(square + glm::dot(c, c)));
-    return std::isfinite(radius) && radius > 0;
-}
 
 Result<std::shared_ptr<const Image>> imageIfThere(const std::string& path) {
     std::error_code error;
@@ -160,13 +140,7 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
 
 EyeLook eyeLookOf(const Mesh& mesh) {
     EyeLook look;
-    std::vector<vec3> points = mesh.positions;
-    if (!fitSphere(points, look.centre, look.radius)) return look;
-    for (int again = 0; again < 6; ++again) {  // without what is no part of the ball: the iris's bowl
-        std::erase_if(points, [&](const vec3& p) { return std::abs(glm::distance(p, look.centre) - look.radius) > 0.03F * look.radius; });
-        if (!fitSphere(points, look.centre, look.radius)) break;
-        points = mesh.positions;
-    }
+    if (!fitBall(mesh.positions, look.centre, look.radius)) return look;
     float nearest = 1e9F;
     for (size_t i = 0; i < std::min(mesh.uvs.size(), mesh.positions.size()); ++i) {
         const float d = glm::distance(mesh.uvs[i], vec2(0.5F));

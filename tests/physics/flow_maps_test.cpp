@@ -13,6 +13,7 @@
 #include "fluid/flow/map_texels.h"
 #include "fluid/flow/skin_folds.h"
 #include "fluid/flow/thesis_picture.h"
+#include "fluid/flow/unwrap.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "shaders/flow/map_step.h"
 #include "tests/physics/charted_skins.h"
@@ -33,10 +34,16 @@ struct Drawn {
     MapTexels layout;
     std::vector<vec2> uvs;
 
-    Drawn(const Skin& skin, int size, const SurfaceFlowParams& params = {}) : device(cpu()) {
+    // `checked`: the skin's UVs are replaced if they are not usable.
+    Drawn(const Skin& skin, int size, const SurfaceFlowParams& params = {}, bool checked = false) : device(cpu()) {
         Result<FlowMesh> mesh = makeFlowMesh(skin.view());
         EXPECT_TRUE(mesh);
         uvs = cornerUvs(*mesh, skin.view());
+        if (checked) {
+            Result<SkinUvs> usable = skinUvs(*mesh, skin.view(), size);
+            EXPECT_TRUE(usable);
+            uvs = std::move(usable->uvs);
+        }
         layout = layTexels(*mesh, uvs, std::vector<float>(mesh->triangleCount(), kNoFold), size);
         Result<SurfaceFlow> made = SurfaceFlow::create(*device, std::move(*mesh), params);
         EXPECT_TRUE(made);
@@ -137,6 +144,32 @@ TEST(FlowMaps, HeightAndSlopesOfACapAreExact) {
     }
     EXPECT_GT(under, 200U);
     EXPECT_NEAR(d.drawnVolume() / volume, 1, 1e-3);
+}
+
+// A ball whose left half shares its texels with the right one, as of a mirrored head: with new UVs all of the volume is drawn, on the
+// mesh's own it is not, and drops move alike on both.
+TEST(FlowMaps, OnOverlappingUvsNewOnesShowAllTheVolume) {
+    Skin folded = test::cubeBall(0.03F, 12);
+    for (vec2& uv : folded.uvs) uv.x = std::abs(uv.x - 0.505F);
+    vec3 ends[2];
+    for (const bool checked : {true, false}) {
+        Drawn d(folded, 512, still(), checked);
+        EXPECT_EQ(checkUvs(d.flow->mesh(), d.uvs, 512).usable(), checked);
+        for (const vec3& x : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0.1F), vec3(0.2F, 0, 1), vec3(-0.5F, -0.5F, -0.6F)})
+            d.flow->add(nearestPoint(d.flow->mesh(), 0.03F * glm::normalize(x)), 6 * kMicrolitre);
+        d.stand();
+        d.maps->draw(*d.flow);
+        const SurfaceFlow::Ledger ledger = d.flow->ledger();
+        EXPECT_EQ(ledger.drops, 30U * kMicrolitre);
+        EXPECT_EQ(ledger.added, ledger.drops + ledger.film + ledger.left + ledger.evaporated);
+        if (checked)
+            EXPECT_NEAR(d.drawnVolume() / 30e-9, 1, 0.01);
+        else
+            EXPECT_LT(d.drawnVolume() / 30e-9, 0.9);
+        for (int k = 0; k < 20; ++k) EXPECT_TRUE(d.flow->step({}, 1.0 / 60));
+        ends[checked ? 1 : 0] = d.flow->drops()[0].position;
+    }
+    EXPECT_EQ(ends[0], ends[1]);
 }
 
 // Slopes equal differences of heights between neighbouring texels, also across a seam.

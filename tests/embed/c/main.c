@@ -483,7 +483,17 @@ static void drops_run_down_a_skin(rivulet_context* context) {
     const rivulet_mesh plate = {.size = sizeof plate, .positions = at, .vertices = 4, .indices = triangles, .indices_count = 6, .uvs = uvs};
     rivulet_skin_options o = {.size = sizeof o, .mesh = &plate, .map_size = 64};
     rivulet_skin* skin = NULL;
+    /* One triangle's uvs on the other's: the skin is made, and the host is told. */
+    const float twice[8] = {0, 0, 1, 0, 1, 1, 1, 0};
+    const rivulet_mesh folded = {.size = sizeof folded, .positions = at, .vertices = 4, .indices = triangles, .indices_count = 6, .uvs = twice};
+    o.mesh = &folded;
+    said = 0;
     DONE(rivulet_skin_create(context, &o, &skin, &why));
+    CHECK(said == 2 && strstr(last, "mesh.uvs: The skin's UVs have 50.0 % of overlap") != NULL);
+    rivulet_skin_destroy(skin);
+    o.mesh = &plate;
+    DONE(rivulet_skin_create(context, &o, &skin, &why));
+    CHECK(said == 3 && strstr(last, "uvs") == NULL); /* open edges alone */
     const float place[3] = {0.05F, 0.05F, 0.001F};
     DONE(rivulet_skin_add(skin, place, 20, &why));
     const float wind[3] = {0, 0, 0};

@@ -426,7 +426,16 @@ void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint3
     } else {
         const std::vector<size_t> eyes = eyesOf(source);
         const size_t side = eyes[state.random() % eyes.size()];
-        if (source.kind == "corner" || thesis()) {
+        if (movedEye(source) == side && !thesis()) {
+            // A brim spills a tear at a time.
+            emitted_ -= picolitres;
+            state.gathered += picolitres;
+            const double tear = source.kind == "brim" ? double{params_.liquid.tear} * kMicrolitre : 0;
+            if (static_cast<double>(state.gathered) < tear) return;
+            const auto whole = static_cast<uint32_t>(std::exchange(state.gathered, 0));
+            emitted_ += whole;
+            flow_->add(besideSpot(source, state, vec2(0.0F)), whole);
+        } else if (source.kind == "corner" || thesis()) {
             flow_->add(tears_[side], picolitres);
         } else {
             const uint32_t from = brimBegin_[side], count = brimBegin_[side + 1] - from;
@@ -455,6 +464,47 @@ SkinPoint FlowComponent::besideSpot(const FlowSourceParams& source, Source& stat
     return hit ? hit->at : nearestPoint(mesh, at);
 }
 
+// The eye whose tears start at the source's position instead.
+std::optional<size_t> FlowComponent::movedEye(const FlowSourceParams& source) const {
+    if (source.position == vec3(0.0F) || (source.kind != "corner" && source.kind != "brim")) return std::nullopt;
+    std::optional<size_t> nearest;
+    float least = 0;
+    for (const size_t side : eyesOf(source)) {
+        const float d = glm::distance(positionOf(flow_->mesh(), tears_[side]), source.position);
+        if (nearest && d >= least) continue;
+        nearest = side;
+        least = d;
+    }
+    return nearest;
+}
+
+std::vector<FlowComponent::TearPoint> FlowComponent::tearPoints() const {
+    std::vector<TearPoint> points;
+    const FlowMesh& mesh = flow_->mesh();
+    const std::vector<vec3>& x = placed_->search().places();
+    const auto add = [&](size_t source, const SkinPoint& at) {
+        const uint32_t* c = &mesh.corner[3 * size_t{at.triangle}];
+        const vec3 own = (1 - at.b1 - at.b2) * x[c[0]] + at.b1 * x[c[1]] + at.b2 * x[c[2]];
+        points.push_back({source, vec3(placed_->toWorld() * glm::dvec4(dvec3(own), 1))});
+    };
+    for (size_t k = 0; k < params_.sources.size(); ++k) {
+        const FlowSourceParams& source = params_.sources[k];
+        if (!(source.rate > 0)) continue;
+        if (source.kind == "spot") add(k, nearestPoint(mesh, source.position));
+        if (source.kind != "corner" && source.kind != "brim") continue;
+        const std::optional<size_t> moved = movedEye(source);
+        for (const size_t side : eyesOf(source))
+            if (marks_.eyes[side].tear) add(k, moved == side ? nearestPoint(mesh, source.position) : tears_[side]);
+    }
+    return points;
+}
+
+std::optional<vec3> FlowComponent::placeMet(const dvec3& from, const dvec3& to) {
+    const std::optional<SkinSearch::Hit> hit = placed_->meets(from, to, placed_->time());
+    if (!hit) return std::nullopt;
+    return positionOf(flow_->mesh(), hit->at);
+}
+
 void FlowComponent::noticeOnce(const std::string& sentence) {
     if (std::find(noticed_.begin(), noticed_.end(), sentence) != noticed_.end()) return;
     noticed_.push_back(sentence);
@@ -465,7 +515,7 @@ void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air)
     for (size_t k = 0; k < params_.sources.size(); ++k) {
         const FlowSourceParams& source = params_.sources[k];
         Source& state = sources_[k];
-        if (!(source.rate > 0) || time < double{source.start} || time >= double{source.stop}) {
+        if (!(source.rate * params_.amount > 0) || time < double{source.start} || time >= double{source.stop}) {
             state.begun = false;
             continue;
         }
@@ -474,7 +524,7 @@ void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air)
             continue;
         }
         const double wave = 1 + double{source.swell} * std::sin(2 * std::numbers::pi * time / double{source.period});
-        state.due += double{source.rate} * kMicrolitre / 60 * seconds * wave;
+        state.due += double{params_.amount} * double{source.rate} * kMicrolitre / 60 * seconds * wave;
         const auto each = static_cast<uint32_t>(std::max(double{source.drop} * kMicrolitre, 1.0));
         // The first drop appears at once.
         if (!std::exchange(state.begun, true)) state.due = std::max(state.due, static_cast<double>(each));
@@ -494,7 +544,8 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
     const double then = time + seconds;
     placed_->moveTo(then);
     around_ = {};
-    bend(then);
+    acted_ += seconds * double{params_.pace};
+    bend(acted_);
     emit(time, seconds, air);
     const dmat4& toWorld = placed_->toWorld();
     SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld};

@@ -49,12 +49,22 @@ class FlowComponent {
     const ThesisPicture& picture() const { return picture_; }
     Bounds bounds() const { return placed_->bounds(); }  // m, world
 
+    // Where tears and other spots start now; m, world. Waits for the device.
+    struct TearPoint {
+        size_t source = 0;
+        vec3 world{0.0F};
+    };
+    std::vector<TearPoint> tearPoints() const;
+    // The place of the skin that a path through the world meets, as FlowSourceParams::position; nothing: none. Waits for the device.
+    std::optional<vec3> placeMet(const dvec3& from, const dvec3& to);
+
   private:
     struct Source {
         double due = 0;  // picolitres
         bool begun = false;
         std::optional<SkinPoint> spot;  // of kind spot, at spotOf
         vec3 spotOf{0.0F};
+        uint64_t gathered = 0;  // picolitres of a brim's next tear, where a person has moved its start
         std::mt19937 random;
     };
     struct Deformed {
@@ -83,6 +93,7 @@ class FlowComponent {
     std::vector<size_t> eyesOf(const FlowSourceParams& source) const;
     std::string faultOf(const FlowSourceParams& source) const;
     SkinPoint besideSpot(const FlowSourceParams& source, Source& state, const vec2& off);
+    std::optional<size_t> movedEye(const FlowSourceParams& source) const;
     void noticeOnce(const std::string& sentence);
 
     FlowParams params_;
@@ -117,6 +128,7 @@ class FlowComponent {
     std::vector<double> areaTo_;  // running sum of the triangles' areas, m^2, weighted by how oily they are
     std::vector<uint8_t> oily_;   // of each place
     uint64_t emitted_ = 0;
+    double acted_ = 0;  // s, of the expression
 };
 
 }  // namespace rivulet

@@ -9,11 +9,13 @@ struct FlowComponent::Snapshot {
     std::vector<Source> sources;
     std::vector<std::string> noticed;
     uint64_t emitted = 0;
+    double acted = 0;
     std::shared_ptr<const SurfaceFlow::Snapshot> flow;
 };
 
 std::shared_ptr<const FlowComponent::Snapshot> FlowComponent::save() const {
-    return std::make_shared<const Snapshot>(Snapshot{placed_->time(), placed_->toWorld(), sources_, noticed_, emitted_, flow_->save()});
+    return std::make_shared<const Snapshot>(
+        Snapshot{placed_->time(), placed_->toWorld(), sources_, noticed_, emitted_, acted_, flow_->save()});
 }
 
 Status FlowComponent::restore(const Snapshot& snapshot) {
@@ -22,7 +24,8 @@ Status FlowComponent::restore(const Snapshot& snapshot) {
     noticed_ = snapshot.noticed;
     emitted_ = snapshot.emitted;
     around_ = {};
-    bend(snapshot.time);
+    acted_ = snapshot.acted;
+    bend(acted_);
     return flow_->restore(*snapshot.flow);
 }
 

@@ -53,7 +53,12 @@ void FlowSourceParams::visit(ParamVisitor& v) {
     v.value({"stop", "s", "time at which the source stops", 0, 3600}, stop);
     v.value({"swell", "", "modulation of the rate: 0 = steady, 1 = between 0 and the full rate", 0, 1}, swell);
     v.value({"period", "s", "period of the modulation", 0.05, 3600, kLog}, period);
-    v.value({"position", "m", "position of a spot, or centre of strewn drops or rain, in the skin's frame", -kFar, kFar}, position);
+    v.value(
+        {"position", "m",
+         "position of a spot, or centre of strewn drops or rain, in the skin's frame; of a corner or brim, where the nearer eye's tears "
+         "start: 0 = at the eye",
+         -kFar, kFar},
+        position);
     v.value({"radius", "m", "radius around the position; 0 = a point, or everywhere for strewn and rain", 0, kFar}, radius);
     v.value({"speed", "m/s", "speed of rain", 0, 100}, speed);
     v.value({"along", "", "direction of rain, in the world, of any length", -1.0e6, 1.0e6}, along);
@@ -124,6 +129,8 @@ void FlowParams::visit(ParamVisitor& v) {
     v.group({.name = "liquid", .doc = "properties of the liquid and its adhesion"}, liquid);
     v.group({.name = "thesis", .doc = "the forces of mode thesis"}, thesis);
     v.group({.name = "motion", .doc = "rigid motion of the skin"}, motion);
+    v.value({"amount", "", "factor on the rates of all sources", 0, 10}, amount);
+    v.value({"pace", "", "speed of the expression; 1: as its periods say, 0: it stands still", 0, 5}, pace);
     v.value({"expressive", "", "factor on all of expression; 0 = none", 0, 1}, expressive);
     v.value({.name = "marble", .doc = "shows the mesh as a statue: all its parts are of one marble, and it has no hair"}, marble);
     v.value({"redness", "", "how red crying makes the eyes, their lids and the nose; half at the start, all after 20 ul of tears", 0, 1},

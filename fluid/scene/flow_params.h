@@ -13,14 +13,16 @@ namespace rivulet {
 
 // A source of drops.
 struct FlowSourceParams {
-    std::string kind = "spot";      // corner | brim | spot | strewn | rain
-    std::string side = "both";      // the eye: left | right | both
-    float rate = 0;                 // microlitres per minute, sum of all drops; 0 = off
-    float drop = 1;                 // microlitres per drop
-    float start = 0, stop = 3600;   // s
-    float swell = 0;                // 0 (steady) to 1 (fully modulated)
-    float period = 4;               // s, of the swell
-    vec3 position{0.0F};            // m, in the skin's own frame: a spot, or the centre of strewn drops or rain
+    std::string kind = "spot";     // corner | brim | spot | strewn | rain
+    std::string side = "both";     // the eye: left | right | both
+    float rate = 0;                // microlitres per minute, sum of all drops; 0 = off
+    float drop = 1;                // microlitres per drop
+    float start = 0, stop = 3600;  // s
+    float swell = 0;               // 0 (steady) to 1 (fully modulated)
+    float period = 4;              // s, of the swell
+    // m, in the skin's own frame: a spot, or the centre of strewn drops or rain; of a corner or brim: where the tears of the nearer eye
+    // start, 0 = at the eye.
+    vec3 position{0.0F};
     float radius = 0.0F;            // m, about a spot; strewn or rain: about `position`; 0 = everywhere
     float speed = 9;                // m/s, of rain
     vec3 along{0.0F, -1.0F, 0.0F};  // direction of rain
@@ -72,6 +74,8 @@ struct FlowParams {
     SurfaceFlowParams liquid;
     ThesisParams thesis;
     FlowMotionParams motion;
+    float amount = 1;      // factor of all rates of the sources
+    float pace = 1;        // of the expression: seconds of it a second
     float expressive = 1;  // factor of all weights in expression
     bool marble = false;   // a statue: all parts of one marble, without hair
     float redness = 0;     // 0..1: of the skin around eyes and nose and of the whites, at last; half of it is there at the start

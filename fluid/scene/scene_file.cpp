@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -13,6 +14,7 @@
 #include "engine/core/input_file.h"
 #include "engine/core/json.h"
 #include "engine/core/param_list.h"
+#include "engine/core/param_value.h"
 #include "engine/core/table.h"
 #include "fluid/sim/solids/solids.h"
 #include "fluid/sim/world/contradictions.h"
@@ -24,6 +26,10 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string shown(const vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+
+VisitFn visiting(SceneFile& scene) {
+    return [&scene](ParamVisitor& v) { scene.visit(v); };
+}
 
 // "", or which values contradict each other. The range of each value was checked when it was read.
 std::string contradiction(const SceneFile& scene) {
@@ -56,6 +62,18 @@ std::string contradiction(const SceneFile& scene) {
     if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must differ from camera.position", shown(scene.camera.target));
     if (glm::length(scene.light.direction) < 1.0e-6F)
         return fmt::format("light.direction is {}: its length must not be 0", shown(scene.light.direction));
+    if (!scene.sliders.empty()) {
+        SceneFile copy = scene;
+        const std::map<std::string, std::string> known = paramTexts(visiting(copy));
+        std::vector<std::string> names;
+        for (const auto& [name, text] : known) names.push_back(name);
+        for (const std::string& path : slidersOf(scene.sliders))
+            if (!known.contains(path)) {
+                const std::string near = nearestName(path, names);
+                return fmt::format("sliders names {}, which is no parameter{}", excerpt(path),
+                                   near.empty() ? "; `rivulet list --parameters` names them" : fmt::format("; did you mean {}?", near));
+            }
+    }
     return "";
 }
 
@@ -80,10 +98,6 @@ std::vector<fs::path> assetFolders() {
 bool isFile(const fs::path& path) {
     std::error_code error;
     return fs::exists(path, error) && !fs::is_directory(path, error);
-}
-
-VisitFn visiting(SceneFile& scene) {
-    return [&scene](ParamVisitor& v) { scene.visit(v); };
 }
 
 }  // namespace
@@ -164,6 +178,19 @@ void SceneFile::visit(ParamVisitor& v) {
     v.group({.name = "background", .doc = "sky and ground"}, background);
     v.group({.name = "budget", .doc = "limits on cost and error: method, spacing and steps are picked from the measured chart"}, budget);
     v.list({.name = "presets", .doc = "groups of values, set by a button or --preset"}, presets);
+    v.value({.name = "sliders", .doc = "parameters that the window shows above all others: their paths, separated by ', '"}, sliders);
+}
+
+std::vector<std::string> slidersOf(std::string_view list) {
+    std::vector<std::string> paths;
+    while (!list.empty()) {
+        std::string_view one = list.substr(0, list.find(','));
+        list.remove_prefix(std::min(one.size() + 1, list.size()));
+        while (one.starts_with(' ')) one.remove_prefix(1);
+        while (one.ends_with(' ')) one.remove_suffix(1);
+        if (!one.empty()) paths.emplace_back(one);
+    }
+    return paths;
 }
 
 Status checkScene(const SceneFile& scene) {

@@ -62,6 +62,9 @@ struct BudgetParams {
     void visit(ParamVisitor& v);
 };
 
+// The paths in SceneFile::sliders.
+std::vector<std::string> slidersOf(std::string_view list);
+
 // The arguments of loadScene.
 struct SceneSource {
     std::string path;  // of the file that was found; "": the scene is of no file
@@ -87,9 +90,10 @@ struct SceneFile {
     BackgroundParams background;
     BudgetParams budget;
     std::vector<PresetParams> presets;
-    std::string folder;  // of the file it came from; not a Param
-    SceneSource source;  // nor this
-    uint32_t room = 0;   // nor this: least number of particles to reserve memory for, as Sources::least
+    std::string sliders;  // paths of the parameters that the window shows above all others, separated by ", "
+    std::string folder;   // of the file it came from; not a Param
+    SceneSource source;   // nor this
+    uint32_t room = 0;    // nor this: least number of particles to reserve memory for, as Sources::least
     void visit(ParamVisitor& v);
 };
 

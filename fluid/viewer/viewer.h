@@ -25,6 +25,7 @@
 #include "fluid/viewer/scene_recording.h"
 #include "fluid/viewer/scene_run.h"
 #include "fluid/viewer/screen_capture.h"
+#include "fluid/viewer/tear_points.h"
 #include "fluid/viewer/viewer_options.h"
 #include "fluid/viewer/welcome_screen.h"
 
@@ -147,6 +148,7 @@ class Viewer {
     Manipulator hand_;
     PourBrush brush_;
     SkinClick skinClick_;
+    TearPoints tearPoints_;
     ProfilerPanel profiler_;
     Inspector watch_;
     SceneBrowser browser_;

@@ -120,6 +120,7 @@ void Viewer::turnBrush() {
 
 bool Viewer::handle(const InputEvents& input) {
     if (input.size.x <= 0 || input.size.y <= 0) return false;
+    if (tearPoints_.take(input, cameraOf(draft_.scene.camera, session().bounds()), session(), draft_.scene, edited_)) return true;
     const Manipulator::Asks asks = hand_.take(input, cameraOf(draft_.scene.camera, session().bounds()), session(), draft_.scene);
     edited_ = edited_ || asks.edited;
     anew_ = anew_ || asks.recreate;
@@ -132,11 +133,12 @@ void Viewer::takeMouse(const InputEvents& input, bool greets) {
     brush_.draw(input, camera, session());
     if (brush_.pours() && opening() == nullptr && session().world().stats().particles >= session().world().particles().count)
         message_ = fmt::format("all {} litres of pour.litres are poured; raise pour.litres to pour more", draft_.scene.pour.litres);
-    if (!greets && !pours && (!ui_.wantsMouse() || hand_.holds()) && !handle(input)) {
+    if (!greets && !pours && (!ui_.wantsMouse() || hand_.holds() || tearPoints_.holds()) && !handle(input)) {
         edited_ = moveCamera(input, session().bounds(), draft_.scene.camera) || edited_;
         skinClick_.take(input, draft_.scene.camera, session());
     }
     hand_.draw(input, camera, session(), draft_.scene);
+    if (!greets && !ui_.wantsMouse()) tearPoints_.draw(input, camera, session());
 }
 
 // A scene is opened, a picture of light surrounds this one, and any other file is a mesh that stands in the middle of the box.

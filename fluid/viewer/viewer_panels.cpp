@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "fluid/viewer/scene_sliders.h"
 #include "fluid/viewer/scene_tree.h"
 #include "fluid/viewer/viewer.h"
 
@@ -67,6 +68,7 @@ void Viewer::drawScenePanel() {
     ParamPanel panel(draft_.params);
     panel.search(visiting(draft_.scene));  // above what differs from scene to scene
     if (!draft_.scene.presets.empty()) drawPresets();
+    edited_ = drawSceneSliders(draft_.scene) || edited_;
     const TreeAsks asks = drawSceneTree(session(), draft_.scene, hand_);
     edited_ = edited_ || asks.edited;
     if (!asks.find.empty()) draft_.params.wanted = asks.find;

@@ -171,6 +171,7 @@ void Viewer::adopt(OpenedScene opened, Cause cause) {
     if (!other && Session::sameWater(scene(), opened.session->scene()))
         if (Status gone = opened.session->continueFrom(session()); !gone) log_.notice(gone.error().message);
     hand_.release();
+    tearPoints_.release();
     if (other) {
         if (draft_.edited(session().budget().has_value())) {
             left_ = draft_.scene;

@@ -7,7 +7,7 @@ uniform sampler2D fluidDepth;  // m
 uniform bool water;
 uniform vec3 blur;  // pixels: the radius of a disc is |x - y / depth|, at most z
 layout(location = 0) out vec4 colour;
-const int kSamples = 48;
+const int kSamples = 24;
 
 float depthAt(ivec2 p) {
     float d = depthOfWindow(texelFetch(sceneDepth, p, 0).r);

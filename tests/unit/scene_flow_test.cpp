@@ -268,6 +268,87 @@ TEST(SceneFlow, TheFirstTearsSpillAtOnce) {
     EXPECT_GE(spilled[1], 1);
 }
 
+// A brim whose position a person has set: the tears of the nearer eye start there, the other's at its lid, and none is lost.
+TEST(SceneFlow, AMovedTearPointIsWhereTearsStart) {
+    auto device = cpu();
+    const vec3 cheek(0.040F, 0.0F, 0.045F);
+    Result<std::unique_ptr<Session>> session =
+        Session::create(crying({"flow.0.mapSize=64", "flow.0.sources.0.position=0.040,0,0.045", "flow.0.liquid.brimStarts=1.2",
+                                "flow.0.sources.0.rate=600", "flow.0.expressive=0"}),
+                        *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    const FlowComponent& skin = *(*session)->flows().skins()[0];
+    const SkinPoint start = nearestPoint(skin.flow().mesh(), cheek);
+    const vec3 at = positionOf(skin.flow().mesh(), start);
+    int there = 0, elsewhere = 0, right = 0;
+    for (int k = 0; k < 300; ++k) {
+        (*session)->step(1.0 / 60, true);
+        for (const SkinDrop& d : skin.flow().drops()) {
+            if (d.volume < 3.0e-9 || d.way > 0.004) continue;
+            if (d.position.x < 0)
+                ++right;
+            else
+                ++(glm::distance(d.position, at) < 0.006F ? there : elsewhere);
+        }
+    }
+    EXPECT_GT(there, 0);
+    EXPECT_EQ(elsewhere, 0) << "the left lid does not fill";
+    EXPECT_GT(right, 0);
+    EXPECT_EQ((*session)->flows().ledger().error, 0.0);
+    const std::vector<FlowComponent::TearPoint> points = skin.tearPoints();
+    ASSERT_EQ(points.size(), 2U);
+    EXPECT_LT(
+        glm::distance(vec3(glm::inverse((*session)->flows().skins()[0]->placed().toWorld()) * glm::dvec4(dvec3(points[0].world), 1)), at),
+        2e-3F);
+}
+
+TEST(SceneFlow, AmountScalesAllSources) {
+    auto device = cpu();
+    double emitted[2];
+    for (const int twice : {0, 1}) {
+        Result<std::unique_ptr<Session>> session = Session::create(
+            crying({"flow.0.mapSize=64", "flow.0.sources.0.swell=0", twice != 0 ? "flow.0.amount=2" : "flow.0.amount=1"}), *device, {});
+        ASSERT_TRUE(session) << session.error().message;
+        for (int k = 0; k < 120; ++k) (*session)->step(1.0 / 60, true);
+        emitted[twice] = (*session)->flows().ledger().emitted - 2.0e-9 * double{(*session)->scene().flow[0].liquid.brimStarts};
+    }
+    EXPECT_NEAR(emitted[1], 2 * emitted[0], 0.02 * emitted[1]);
+}
+
+// What is drawn of a lid, its lashes and its film, follows what is in it; a device reports that without a wait.
+TEST(SceneFlow, TheContentOfLidsIsReported) {
+    auto device = cpu();
+    Result<std::unique_ptr<Session>> session = Session::create(crying({"flow.0.mapSize=64", "flow.0.sources.0.rate=0"}), *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    std::vector<uint64_t> content;
+    (*session)->flows().skins()[0]->flow().brimsLater([&](std::span<const uint64_t> now) { content.assign(now.begin(), now.end()); });
+    ASSERT_EQ(content.size(), 2U);
+    const double starts = 1.0e6 * double{(*session)->scene().flow[0].liquid.brimStarts};
+    for (const uint64_t one : content) EXPECT_NEAR(static_cast<double>(one), starts, 1e-4 * starts);
+}
+
+TEST(SceneFlow, AStatueIsOfMarbleWithoutHair) {
+    auto device = cpu();
+    Result<std::unique_ptr<Session>> session = Session::create(crying({"flow.0.mapSize=64"}, "rain on a statue"), *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    size_t shown = 0;
+    for (const Node& node : (*session)->solids().nodes()) {
+        if (!node.mesh || !node.visible) continue;
+        ++shown;
+        EXPECT_TRUE(node.material.skin != nullptr && node.material.colour == nullptr) << node.name;
+        EXPECT_FALSE(node.material.eye) << node.name;
+        EXPECT_FALSE(node.name.starts_with("hair") || node.name.starts_with("lashes")) << node.name;
+    }
+    EXPECT_GE(shown, 3U) << "the skin and both eyes";
+}
+
+TEST(SceneFlow, ASliderThatIsNoParameterIsRefused) {
+    const Result<SceneFile> scene = loadScene("crying", std::vector<std::string>{"sliders=flow[0].amout"});
+    ASSERT_FALSE(scene);
+    EXPECT_NE(scene.error().message.find("flow[0].amout"), std::string::npos) << scene.error().message;
+    EXPECT_NE(scene.error().message.find("flow[0].amount"), std::string::npos) << scene.error().message;
+}
+
 // Each preset does what its name says within a few seconds.
 TEST(SceneFlow, PresetsWetTheFace) {
     auto device = cpu();

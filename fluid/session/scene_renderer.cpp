@@ -239,9 +239,9 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
         solid.add(b.max);
     }
     const BackgroundParams& background = settings.background;
-    Studio studio{
-        background.horizon, background.zenith, background.floor, background.floorHeight, background.tiles, background.showFloor,
-        settings.light.fill, settings.light.rim,    solid};
+    Studio studio{background.horizon,     background.zenith,  background.floor,
+                  background.floorHeight, background.tiles,   background.showFloor,
+                  settings.light.fill,    settings.light.rim, solid};
     const Bounds box{settings.fluid.box.min, settings.fluid.box.max};
     studio.shown.add(box.min);
     studio.shown.add(box.max);

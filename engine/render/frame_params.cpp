@@ -18,10 +18,12 @@ void placeSoftboxes(FrameParams& f, const Studio& studio) {
         vec2 halfSize;
         vec3 radiance;
         float share = 0.0F;
-    } boxes[3] = {
-        {key, {0.30F, 0.22F}, 3.0F * colour},                                                                 // around the key light
-        {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint, studio.fill},          // a strip at one side
-        {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0), {0.70F, studio.rim > 0 ? 0.30F : 0.07F}, {2.6F, 2.85F, 3.0F}, studio.rim}};  // a wide one opposite the key
+    } boxes[3] = {{key, {0.30F, 0.22F}, 3.0F * colour},                                                         // around the key light
+                  {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint, studio.fill},  // a strip at one side
+                  {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0),
+                   {0.70F, studio.rim > 0 ? 0.30F : 0.07F},
+                   {2.6F, 2.85F, 3.0F},
+                   studio.rim}};  // a wide one opposite the key
     for (size_t k = 0; k < 3; ++k) {
         const vec3 towards = glm::normalize(boxes[k].towards);
         f.boxTowards[k] = vec4(towards, boxes[k].halfSize.x);

@@ -73,7 +73,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     std::shared_ptr<Reports> reports = std::make_shared<Reports>();
     Bounds corners;  // m, of the skin at rest
     uint32_t brims = 0, brimPlaces = 0;
-    std::vector<uint32_t> placesOf;  // of each brim: how many
+    std::vector<uint32_t> placesOf;      // of each brim: how many
     std::optional<ThesisTables> thesis;  // of thesis mode
     // Buffers that change from step to step, besides those that are sorted.
     auto remembered() { return std::array{&drop, &motion, &film, &painted, &point, &driven}; }

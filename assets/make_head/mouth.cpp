@@ -52,7 +52,7 @@ Part makeTeeth(std::vector<double>& jaw) {
                 const dvec3 across = glm::normalize(dvec3(wide * std::cos(angle), 0, -side * deep * std::sin(angle)));
                 const dvec3 out =
                     glm::normalize(glm::cross(across, dvec3(0, 1, 0)) * -1.0) * (glm::cross(across, dvec3(0, 1, 0)).z < 0 ? 1.0 : -1.0);
-                const double edge = upper ? -4.36 : -4.50;  // where the rows nearly meet
+                const double edge = upper ? -4.36 : -4.78;  // where the rows nearly meet
                 const double middle = edge + (upper ? 0.5 : -0.5) * height + 0.03 * (hash(k, upper ? 1 : 2, side > 0 ? 1 : 0, 5) - 0.5);
                 const double thick = k < 3 ? 0.34 : 0.62;
                 const size_t before = part.positions.size();

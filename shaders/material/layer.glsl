@@ -47,7 +47,7 @@ vec3 filmAt(Tangents t, vec2 uv, float lod, inout float wet) {
     float trail = smoothstep(0.2, 0.42, around);  // 0: specks, smaller than the reach
     vec4 bead = roughnessAt(t, uv, 4.5e-3), hold = 0.45 * bead + 0.4 * roughnessAt(t, uv, 2.0e-3) + 0.2 * roughnessAt(t, uv, 0.7e-3);
     // As it dries, it breaks up. Where all around is wet, nothing pulls at it.
-    float loose = mix(1.4, 0.8, smoothstep(0.3, 0.9, wet)) * (1.0 - 0.7 * smoothstep(0.85, 1.0, around));
+    float loose = mix(1.4, 0.8, smoothstep(0.3, 0.9, wet)) * (1.0 - 0.5 * smoothstep(0.85, 1.0, around));
     const float kFrom = 0.46, kTo = 0.66;
     float x = clamp((around * (1.0 + loose * hold.x) - kFrom) / (kTo - kFrom), 0.0, 1.0), steep = 6.0 * x * (1.0 - x) / (kTo - kFrom);
     slope = slope * (1.0 + loose * hold.x) + around * loose * hold.yzw;

@@ -173,7 +173,7 @@ void main() {
         r0 *= r0;
         vec3 film = n - q.slope;
 #if defined(SKIN)
-        film -= (slope + fine) * (0.65 * filled);
+        film -= (slope + fine) * (1.1 * filled * (1.0 - q.drop));
 #else
         film += (facing + q.slope * (layerLook.x - 1.0) - n) * (1.0 - q.drop);
 #endif

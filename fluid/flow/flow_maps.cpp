@@ -54,9 +54,7 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
         *w.kernel = *found;
     }
     whole = device->backend() == Backend::cpu;
-    std::vector<Define> defines;
-    if (whole) defines.push_back({"WHOLE", "1"});
-    Result<Kernel> drawing = device->kernel("flow/map_rows", defines);
+    Result<Kernel> drawing = device->kernel(whole ? "flow/map_tiles" : "flow/map_quads");
     if (!drawing) return drawing.error();
     rows = *drawing;
     Buffer shown, taps;
@@ -174,7 +172,7 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.reached, &w.near}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.reached}, w.tiles);
-    d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 4 * w.tiles);
+    d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 16 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
         if (level == 3 || (level == 2 && w.whole)) continue;  // 3 is made with 2
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);

@@ -28,10 +28,16 @@ FN float dropShare(DrawnDrop d, float dx, float dy, float dz, float behind) {
 // Share of a texel that the drop covers. `perMetre`: texels.
 FN float dropCover(DrawnDrop d, float share, float perMetre) { return min(share * d.crisp * perMetre, 1.0f); }
 
-// Whether a straight walk over the skin from a place on triangle t towards `to` ends within `close` of it; else it is other
-// skin nearby, for example the other lip.
-FN bool reaches(GLOBAL(uint, skin) GLOBAL(vec4, basis) uint t, vec3 from, vec3 to, float close) {
-    SkinWalk w = walkFrom(PASS(basis) t, from);
+// Whether a straight walk over the skin from the middle of triangle t towards `to` ends within `close` of it; else it is other skin nearby, for
+// example the other lip. All texels of a triangle ask from its middle, and so get one answer.
+FN bool reaches(GLOBAL(uint, skin) GLOBAL(vec4, basis) uint t, vec3 to, float close) {
+    SkinWalk w;
+    w.triangle = t;
+    w.b1 = 0.33333333f;
+    w.b2 = 0.33333333f;
+    w.n = TRIANGLE_NORMAL(t);
+    w.v = vec3(0.0f, 0.0f, 0.0f);
+    w.gone = 0u;
     for (int k = 0; k < 4; ++k) {
         vec3 x = basis[5u * w.triangle].xyz + basis[5u * w.triangle + 1u].xyz * w.b1 + basis[5u * w.triangle + 2u].xyz * w.b2;
         vec3 d = to - x;

@@ -45,6 +45,15 @@ Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const 
     return ok();
 }
 
+double dragOf(const SurfaceFlowParams& p) {
+    constexpr double kOuter = 1.0e-3;  // m, about a drop's height
+    if (!(p.wallFriction > 0)) return double{p.drag};
+    const double advancing = double{p.advancing} * kRadian, receding = double{std::min(p.receding, p.advancing)} * kRadian;
+    const double slip = double{p.viscosity} / double{p.wallFriction};
+    const double wedges = std::sin(receding) / (receding * receding) + std::sin(advancing) / (advancing * advancing);
+    return 3 * double{p.hold} * wedges * std::log(std::max(kOuter / slip, 2.0));
+}
+
 FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const {
     constexpr double kAirDensity = 1.2;  // kg/m^3
     const SurfaceFlowParams& p = params;
@@ -63,7 +72,7 @@ FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepPa
     f.density = p.density;
     f.contactRadius = static_cast<float>(contactRadius(meanAngle(p)));
     f.hold = static_cast<float>(double{p.hold * p.surfaceTension} * (std::cos(receding) - std::cos(advancing)));
-    f.drag = p.drag * p.viscosity;
+    f.drag = static_cast<float>(dragOf(p) * double{p.viscosity});
     f.adhesion = static_cast<float>(double{p.adhesion * p.surfaceTension} * 3.14159265358979323846 * std::sin(advancing));
     f.airDrag = static_cast<float>(0.5 * kAirDensity * double{p.airDrag} * 0.4);  // a cap's height is about 0.4 of its width
     f.trail = p.trail;

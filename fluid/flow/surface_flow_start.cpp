@@ -21,6 +21,9 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
             receding);
     v.value({"hold", "", "factor on the force that holds a drop; 1 = that of a disc with these angles", 0, 10}, hold);
     v.value({"drag", "", "force that slows a drop, over its width times viscosity times speed", 0, 10000}, drag);
+    v.value({"wallFriction", "Pa s/m",
+             "friction of the liquid on the skin; with it drag is ignored and follows from the contact angles; 0 = drag", 0, 1.0e9},
+            wallFriction);
     v.value({"adhesion", "", "factor on the force that keeps a drop on a skin from which it hangs", 0, 10}, adhesion);
     v.value({"airDrag", "", "drag coefficient of a drop in the wind", 0, 10}, airDrag);
     v.value({"largestDrop", "ul", "limit on the volume of a drop: drops that would exceed it do not merge", 0.01, 100, kLog, kFixed},

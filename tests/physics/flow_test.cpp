@@ -163,6 +163,21 @@ TEST(Flow, SlidesDownASlopeByLeGrandsLaw) {
     }
 }
 
+// Cox 1986 and Voinov 1976: the force that the moving line adds, k (cos r' - cos a') for a small speed with theta^3 = theta_s^3 +- 9 Ca ln.
+TEST(Flow, WithAWallFrictionTheAnglesGiveTheDrag) {
+    SurfaceFlowParams p;
+    EXPECT_EQ(dragOf(p), 60);
+    p.viscosity = 0.1F;
+    p.wallFriction = 2.0e6F;  // a slip length of 50 nm
+    p.hold = 0.7F;
+    const double ca = 1e-6, ln = std::log(1e-3 / 50e-9), front = 60 * kPiD / 180, back = 40 * kPiD / 180;
+    const auto angle = [&](double rest, double sign) { return std::cbrt(rest * rest * rest + sign * 9 * ca * ln); };
+    const double more = std::cos(angle(back, -1)) - std::cos(angle(front, 1)) - std::cos(back) + std::cos(front);
+    EXPECT_NEAR(dragOf(p), 0.7 * more / ca, 1e-3 * dragOf(p));
+    p.viscosity = 1.0e6F;  // slips by more than its height
+    EXPECT_GT(dragOf(p), 0);
+}
+
 // Furmidge 1962: a drop of 60 / 40 degrees on a vertical wall begins to slide at 4.07 microlitres, of 90 / 60 at 7.74: rho g V = w gamma
 // (cos receding - cos advancing), for a cap with the mean angle. The drop grows by fifty others.
 TEST(Flow, IsHeldUntilItIsTooHeavy) {

@@ -1,4 +1,5 @@
-// A triangle in a map: positions on it are an affine function of UV. The fourth component of vec4 has no meaning (a CPU computes four at once).
+// A triangle in a map: positions on it are an affine function of UV. The fourth component of vec4 has no meaning (a CPU computes four at
+// once).
 STRUCT(MapSheet) {
     vec4 middle;  // m
     vec4 alongU;  // m per unit of u

@@ -1,35 +1,56 @@
 // What a texel shows of a drop and of the film, for the kernels that draw maps. After half.h.
+
+// A drop. Ahead of the widest line of its foot a half circle of half the width w: h = H (1 - r^2 / w^2). Behind, at a share t of the tail's
+// length, h = H (q(t) - y^2 / w^2) with q = 1 + a t^2 + b t^3 + c t^4, so that the foot is sqrt(q) times as wide: an ellipse for q = 1 -
+// t^2; a corner for a double root at t = 1, where q = (1 - t)^2 (1 + 2 t + c t^2); a cusp for a triple one.
 STRUCT(DrawnDrop) {
-    vec3 meet;          // m, where its halves meet
-    vec3 tail;          // along its way; distances behind the line are scaled by the length of the tail
+    vec3 meet;  // m, the middle of the widest line
+    vec3 way;   // unit vector ahead
     float inverseWide2;
-    float high;         // m
-    float fall;         // 1/m
-    float crisp;        // m, half of half its width
+    float inverseLong;  // 1/m
+    float push;         // m, half the square of the width over the length
+    float a;
+    float b;
+    float c;
+    float high;   // m
+    float fall;   // 1/m
+    float crisp;  // m, half of half its width
 };
-FN DrawnDrop drawnDrop(vec4 ball, vec4 shape) {
+FN DrawnDrop drawnDrop(vec4 ball, vec4 shape, vec4 back) {
     float off = sqrt(dot(shape.xyz, shape.xyz));
-    float wide = ball.w * (1.0f - off);
+    float wide = max(ball.w * (1.0f - off), 1.0e-10f);
     DrawnDrop d;
     d.meet = ball.xyz + shape.xyz * ball.w;
-    d.tail = shape.xyz * (2.0f / ((1.0f + off) * sqrt(max(off, 1.0e-12f))));
-    d.inverseWide2 = 1.0f / max(wide * wide, 1.0e-20f);
+    d.way = shape.xyz * (1.0f / max(off, 1.0e-12f));
+    d.inverseWide2 = 1.0f / (wide * wide);
+    d.inverseLong = 1.0f / max(ball.w * (1.0f + off), 1.0e-10f);
+    d.push = 0.5f * wide * wide * d.inverseLong;
+    d.a = back.x;
+    d.b = back.y;
+    d.c = back.z;
     d.high = shape.w;
     d.fall = 2.0f * shape.w * d.inverseWide2;
     d.crisp = 0.5f * wide;
     return d;
 }
-// How far behind the line where the halves meet, scaled.
-FN float dropBehind(DrawnDrop d, float dx, float dy, float dz) { return max0(-(dx * d.tail.x + dy * d.tail.y + dz * d.tail.z)); }
+// m, how far behind the widest line.
+FN float dropBehind(DrawnDrop d, float dx, float dy, float dz) { return max0(-(dx * d.way.x + dy * d.way.y + dz * d.way.z)); }
 // Share of the drop's height.
 FN float dropShare(DrawnDrop d, float dx, float dy, float dz, float behind) {
-    return max0(1.0f - (dx * dx + dy * dy + dz * dz - behind * behind) * d.inverseWide2);
+    float t = min(behind * d.inverseLong, 1.0f);
+    float q = 1.0f + t * t * (d.a + t * (d.b + t * d.c));
+    return max0(q - (dx * dx + dy * dy + dz * dz - behind * behind) * d.inverseWide2);
+}
+// The slope, per `fall`: against the way from the middle of the widest line, and this much (m) along the drop's way.
+FN float dropAlong(DrawnDrop d, float behind) {
+    float t = min(behind * d.inverseLong, 1.0f);
+    return behind + t * (2.0f * d.a + t * (3.0f * d.b + t * 4.0f * d.c)) * d.push;
 }
 // Share of a texel that the drop covers. `perMetre`: texels.
 FN float dropCover(DrawnDrop d, float share, float perMetre) { return min(share * d.crisp * perMetre, 1.0f); }
 
-// Whether a straight walk over the skin from the middle of triangle t towards `to` ends within `close` of it; else it is other skin nearby, for
-// example the other lip. All texels of a triangle ask from its middle, and so get one answer.
+// Whether a straight walk over the skin from the middle of triangle t towards `to` ends within `close` of it; else it is other skin nearby,
+// for example the other lip. All texels of a triangle ask from its middle, and so get one answer.
 FN bool reaches(GLOBAL(uint, skin) GLOBAL(vec4, basis) uint t, vec3 to, float close) {
     SkinWalk w;
     w.triangle = t;

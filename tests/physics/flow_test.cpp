@@ -104,6 +104,7 @@ TEST(Flow, PassesThroughTrianglesWithoutArea) {
                       {0, 2, 3, 0, 3, 1, 2, 4, 3, 2, 5, 6, 2, 6, 4, 4, 6, 7, 4, 7, 3}};
     SurfaceFlowParams p;
     p.hold = p.drag = p.airDrag = p.trail = 0;
+    p.pearls = false;
     SurfaceFlow flow = flowOn(*device, shape, p);
     EXPECT_EQ(flow.mesh().report.flat, 1U);
     for (const float x : {0.02F, 0.05F, 0.071F}) flow.add(nearestPoint(flow.mesh(), vec3(x, 0.09F, 0)), kMicrolitres, vec3(0.1F, -0.8F, 0));
@@ -176,6 +177,34 @@ TEST(Flow, WithAWallFrictionTheAnglesGiveTheDrag) {
     EXPECT_NEAR(dragOf(p), 0.7 * more / ca, 1e-3 * dragOf(p));
     p.viscosity = 1.0e6F;  // slips by more than its height
     EXPECT_GT(dragOf(p), 0);
+}
+
+// Podgorski, Flesselles and Limat 2001: a drop that is faster than its back can recede sheds small ones, which stay behind. All volume is
+// there, and a quarter of the slots stays free.
+TEST(Flow, AFastDropShedsSmallOnes) {
+    const Shape wall = sheetShape(vec3(0, 0.4F, 0), vec3(0.02F, 0, 0), vec3(0, -0.4F, 0), 4, 40);
+    SurfaceFlowParams p;
+    p.hold = p.airDrag = p.trail = 0;
+    p.touch = 0.1F;
+    p.capacity = 16;
+    for (const double share : {1.4, 1.6}) {
+        auto device = cpu();
+        SurfaceFlow flow = flowOn(*device, wall, p);
+        flow.add(nearestPoint(flow.mesh(), vec3(0.01F, 0.39F, 0)), 8 * kMicrolitres);
+        const double slope = std::tan(25 * kPiD / 180), width = 2 * std::cbrt(6 * 8e-9 / (kPiD * slope * (3 + slope * slope)));
+        const double gravity = share * cornerSpeed(p) * 60 * width * 1.73e-3 / (1005 * 8e-9);
+        for (int k = 0; k < 90; ++k) EXPECT_TRUE(flow.step({.gravity = vec3(0, static_cast<float>(-gravity), 0)}, 1.0 / 60));
+        const std::vector<SkinDrop> drops = flow.drops();
+        EXPECT_EQ(drops.size(), share < 1.49 ? 1U : 12U) << share;
+        const SurfaceFlow::Ledger l = flow.ledger();
+        EXPECT_EQ(l.added, l.drops);
+        double least = 1, most = 0;
+        for (const SkinDrop& d : drops) {
+            least = std::min(least, d.volume);
+            most = std::max(most, d.volume);
+        }
+        if (share > 1.49) EXPECT_NEAR(most / least, 512, 12);
+    }
 }
 
 // Furmidge 1962: a drop of 60 / 40 degrees on a vertical wall begins to slide at 4.07 microlitres, of 90 / 60 at 7.74: rho g V = w gamma

@@ -54,9 +54,7 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
         *w.kernel = *found;
     }
     whole = device->backend() == Backend::cpu;
-    std::vector<Define> defines;
-    if (whole) defines.push_back({"WHOLE", "1"});
-    Result<Kernel> drawing = device->kernel("flow/map_rows", defines);
+    Result<Kernel> drawing = device->kernel(whole ? "flow/map_tiles" : "flow/map_quads");
     if (!drawing) return drawing.error();
     rows = *drawing;
     Buffer shown, taps;
@@ -67,7 +65,7 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
           std::pair(&taps, 3 * made.texel.size() * sizeof(uint32_t)), std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)),
           std::pair(&pin, made.pin.size() * sizeof(uint32_t)), std::pair(&chart, made.chart.size() * sizeof(vec4)),
           std::pair(&cover, asked.size_bytes()), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
-          std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)),
+          std::pair(&cap, CAP_VECS * size_t{flow.slots} * sizeof(vec4)),
           // The last block of cells may end behind the last triangle's.
           std::pair(&film, flow.film->bytes() / 2 + (made.chart.size() + 4) * sizeof(uint32_t)),
           std::pair(&near, ((NEAR_UINTS + 1) * made.tiles() + 1) * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
@@ -118,9 +116,9 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.trail = std::max(params.trail, 1.0e-6F);
     s.tap = 0.6F * params.filmCell;
     s.contactRadius = static_cast<float>(contactRadius(meanAngle(params)));
-    // Where viscosity leaves nothing of the receding angle: theta^3 = 9 Ca ln(size / molecule), the logarithm about 10.
-    const float receding = glm::radians(std::max(params.receding, 10.0F));
-    s.inverseCorner = 90.0F * params.viscosity / (std::max(params.surfaceTension, 1.0e-6F) * receding * receding * receding);
+    s.receding = glm::radians(std::max(std::min(params.receding, params.advancing), 10.0F));
+    s.advancing = std::max(glm::radians(params.advancing), s.receding);
+    s.inverseCorner = static_cast<float>(1 / cornerSpeed(params));
     return s;
 }
 
@@ -171,10 +169,10 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     w.moved = v.moved;
     w.stepped = v.steps;
     d.fill(w.reached, 0);
-    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.reached, &w.near}, s.slots);
+    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, v.id, v.lean, &w.cap, &w.reached, &w.near}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.reached}, w.tiles);
-    d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 4 * w.tiles);
+    d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 16 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
         if (level == 3 || (level == 2 && w.whole)) continue;  // 3 is made with 2
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);

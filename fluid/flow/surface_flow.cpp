@@ -45,6 +45,24 @@ Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const 
     return ok();
 }
 
+double dragOf(const SurfaceFlowParams& p) {
+    constexpr double kOuter = 1.0e-3;  // m, about a drop's height
+    if (!(p.wallFriction > 0)) return double{p.drag};
+    const double advancing = double{p.advancing} * kRadian, receding = double{std::min(p.receding, p.advancing)} * kRadian;
+    const double slip = double{p.viscosity} / double{p.wallFriction};
+    const double wedges = std::sin(receding) / (receding * receding) + std::sin(advancing) / (advancing * advancing);
+    return 3 * double{p.hold} * wedges * std::log(std::max(kOuter / slip, 2.0));
+}
+
+double cornerSpeed(const SurfaceFlowParams& p) {
+    constexpr double kLog = 8.4;
+    const double receding = std::max(double{std::min(p.receding, p.advancing)}, 10.0) * kRadian;
+    return (1 - double{CORNER_LEAVES}) * receding * receding * receding / (9 * kLog) * double{p.surfaceTension} / double{p.viscosity};
+}
+
+// Of the corner's speed: cusps begin at the root of 2, where the corner's half angle is 45 degrees, and shed drops soon after.
+constexpr double kPearling = 1.49;
+
 FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const {
     constexpr double kAirDensity = 1.2;  // kg/m^3
     const SurfaceFlowParams& p = params;
@@ -63,7 +81,7 @@ FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepPa
     f.density = p.density;
     f.contactRadius = static_cast<float>(contactRadius(meanAngle(p)));
     f.hold = static_cast<float>(double{p.hold * p.surfaceTension} * (std::cos(receding) - std::cos(advancing)));
-    f.drag = p.drag * p.viscosity;
+    f.drag = static_cast<float>(dragOf(p) * double{p.viscosity});
     f.adhesion = static_cast<float>(double{p.adhesion * p.surfaceTension} * 3.14159265358979323846 * std::sin(advancing));
     f.airDrag = static_cast<float>(0.5 * kAirDensity * double{p.airDrag} * 0.4);  // a cap's height is about 0.4 of its width
     f.trail = p.trail;
@@ -84,6 +102,7 @@ FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepPa
     f.brimMost = brimPlaces == 0 ? 1.0F : p.brimHolds * 1.0e6F * static_cast<float>(brims) / static_cast<float>(brimPlaces);
     f.brimRadius = p.brimWidth;
     f.tear = p.tear * 1.0e6F;
+    f.pearlPace = static_cast<float>(kPearling * cornerSpeed(p));
     f.settle = static_cast<float>(1 - std::exp(-seconds / kSettling));
     return f;
 }
@@ -243,6 +262,9 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     if (f.brims > 0)
         w.device->run(w.brim, f, {&w.chain, &w.spill, &w.grid->cellStart(), &w.drops.id, &w.frames, &w.drop, &w.motion, &w.counter},
                       f.brims);
+    if (w.params.pearls && !w.thesis && w.steps > 1)
+        w.device->run(w.pearl, f, {&w.grid->cellStart(), &w.drops.id, &w.skin, &w.frames, &w.drop, &w.motion, &w.lean, &w.counter},
+                      f.count);
     // The force that holds a film's edge is stiff; single drops have none.
     const int parts = w.thesis ? w.thesis->parts(seconds) : w.reports->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
     for (int k = 0; k < parts; ++k) {
@@ -303,7 +325,7 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);
     device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
     device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
-    device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion}, f.count);
+    device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion, &lean}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);
     device->run(paint, f, {&drops.id, &skin, &frames, &motion, &film, &drop, &painted}, f.count);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
@@ -316,7 +338,7 @@ Status SurfaceFlow::Impl::moveThesis(const FlowStep& step, const StepParams& s) 
     f.trail = 0;
     const Buffer &layout = thesis->skin(), &flat = thesis->flat();
     if (Status pressed = thesis->press(forThesis(), f, s); !pressed) return pressed;
-    device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &motion}, f.count);
+    device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &motion, &lean}, f.count);
     device->run(walk, f, {&drops.id, &layout, &flat, &shift, &drop, &motion}, f.count);
     thesis->releaseDrops(forThesis(), f);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
@@ -382,6 +404,8 @@ FlowView SurfaceFlow::view() const {
                .cellStart = &w.grid->cellStart(),
                .position = &w.drops.position,
                .velocity = &w.drops.velocity,
+               .id = &w.drops.id,
+               .lean = &w.lean,
                .slots = w.count(),
                .largestRadius = std::max({static_cast<float>(contactRadius(meanAngle(w.params)) * std::cbrt(largest)),
                                           static_cast<float>(kFilmRadius) * w.params.filmReach, w.params.brimWidth}),

@@ -53,10 +53,11 @@ struct SurfaceFlow::Impl : FlowCourse {
     SurfaceFlowParams params;
     std::unique_ptr<NeighborGrid> grid;
     Particles drops;  // as the grid sorts them: position.w radius, velocity.w volume
-    Kernel take, rest, mark, facing, goOver, basis, stand, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
+    Kernel take, rest, mark, facing, goOver, basis, stand, drive, born, brim, pearl, place, name, merge, law, steer, walk, paint, dry,
+        leave;
     PairKernel meet, gather, spread, press;
     Buffer skin, given, hostMoved, point, frames, driven, wanted, painted, begin, footprint, weight;  // of the mesh
-    Buffer drop, motion;                                                                              // by id
+    Buffer drop, motion, lean;                                                                        // by id
     Buffer names, sortedOf, side, into, merged, shift, spreads, faces, reached;                       // sorted
     Buffer chain, spill;                                                                              // of brims
     Buffer film;                                                                                      // picolitres, of each cell
@@ -76,7 +77,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     std::vector<uint32_t> placesOf;      // of each brim: how many
     std::optional<ThesisTables> thesis;  // of thesis mode
     // Buffers that change from step to step, besides those that are sorted.
-    auto remembered() { return std::array{&drop, &motion, &film, &painted, &point, &driven}; }
+    auto remembered() { return std::array{&drop, &motion, &lean, &film, &painted, &point, &driven}; }
 
     uint32_t count() const { return drops.count; }
     Status prepare(Device& on, std::span<const SkinBrim> along);

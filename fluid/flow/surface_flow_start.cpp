@@ -22,6 +22,9 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
             receding);
     v.value({"hold", "", "factor on the force that holds a drop; 1 = that of a disc with these angles", 0, 10}, hold);
     v.value({"drag", "", "force that slows a drop, over its width times viscosity times speed", 0, 10000}, drag);
+    v.value({"wallFriction", "Pa s/m",
+             "friction of the liquid on the skin; with it drag is ignored and follows from the contact angles; 0 = drag", 0, 1.0e9},
+            wallFriction);
     v.value({"adhesion", "", "factor on the force that keeps a drop on a skin from which it hangs", 0, 10}, adhesion);
     v.value({"airDrag", "", "drag coefficient of a drop in the wind", 0, 10}, airDrag);
     v.value({"largestDrop", "ul", "limit on the volume of a drop: drops that would exceed it do not merge", 0.01, 100, kLog, kFixed},
@@ -35,6 +38,9 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({"evaporation", "m/s", "evaporation rate of the film", 0, 1.0e-5}, evaporation);
     v.value({"filmCell", "m", "limit on the width of the film's cells", 1.0e-5, 0.1, kLog, kFixed}, filmCell);
     v.value({"filmReach", "m", "support radius of the sum that gives the film's height", 1.0e-4, 0.1, kLog, kFixed}, filmReach);
+    v.value(
+        {.name = "pearls", .doc = "whether a drop sheds small drops from its tail, at 1.49 times the speed at which a corner forms there"},
+        pearls);
     v.value({.name = "contact", .doc = "whether drops pass to skin that faces them and that they touch: between lips, between lids"},
             contact);
     v.value({"brimHolds", "ul", "volume that an eyelid's brim holds before it overflows", 0.1, 100, kLog}, brimHolds);
@@ -82,11 +88,11 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         const char* path;
     };
     for (const Wanted& w :
-         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&mark, "flow/mark"}, Wanted{&facing, "flow/facing"},
+         {Wanted{&take, "flow/take"},      Wanted{&rest, "flow/rest"},   Wanted{&mark, "flow/mark"},   Wanted{&facing, "flow/facing"},
           Wanted{&goOver, "flow/go_over"}, Wanted{&basis, "flow/basis"}, Wanted{&stand, "flow/stand"}, Wanted{&drive, "flow/drive"},
-          Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"}, Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"},
-          Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"}, Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"},
-          Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"}, Wanted{&leave, "flow/leave"}}) {
+          Wanted{&born, "flow/born"},      Wanted{&brim, "flow/brim"},   Wanted{&pearl, "flow/pearl"}, Wanted{&place, "flow/place"},
+          Wanted{&name, "flow/name"},      Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"},     Wanted{&steer, "flow/steer"},
+          Wanted{&walk, "flow/walk"},      Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"},     Wanted{&leave, "flow/leave"}}) {
         Result<Kernel> found = on.kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -115,6 +121,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&weight, under.weight.size() * sizeof(float)),
                                  std::pair(&drop, n * DROP_UINTS * sizeof(uint32_t)),
                                  std::pair(&motion, 2 * n * sizeof(vec4)),
+                                 std::pair(&lean, n * sizeof(vec4)),
                                  std::pair(&side, n * sizeof(vec4)),
                                  std::pair(&spreads, n * sizeof(vec4)),
                                  std::pair(&chain, 2 * size_t{brims} * sizeof(uint32_t)),

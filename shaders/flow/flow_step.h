@@ -66,6 +66,10 @@ STRUCT(FlowStep) {
     float reach;       // share of a cap's height: the distance at which a drop moves to the facing skin
     uint number;       // number of this step, from 1
     uint everywhere;   // 1: flow/drive is needed at every place
+    float pearlPace;   // m/s: a faster drop sheds small ones
+    uint unused1;
+    uint unused2;
+    uint unused3;
 };
 STRUCT(FlowBirth) {
     vec4 velocity;  // m/s, along the triangle; w: 1 part of a film, 0 a drop
@@ -82,6 +86,8 @@ STRUCT(FlowLeft) {
     uint spare0;
     uint spare1;
 };
+CONSTANT(float, CORNER_LEAVES, 0.125f);  // share of the cube of the receding angle where a drop's back becomes a corner: at half the angle
+CONSTANT(uint, PEARL_SHARE, 512u);  // volumes of a drop that it sheds in that of the drop: an eighth as wide
 CONSTANT(uint, MOST_LEFT, 256u);  // in a step; the others wait for the next
 CONSTANT(uint, FLOW_COUNTERS, 8u);  // see born, merge, leave, dry
 // Not of the language: a positive number's cube root, to rounding (Newton, from a guess by its bits).

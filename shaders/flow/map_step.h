@@ -13,11 +13,11 @@ namespace rivulet {
 #define TEXEL_TURN_V 29u
 #define TEXEL_FOLD 0x80000000u
 #define TILE_TEXELS 64u
-// A tile: its position in tiles, x | y << 16; its first piece and the one past its last; and the offset of its texels. A piece is a connected
-// part of the skin. Texels are 64 uints of four bytes: the index of the word that the texel shows, and the three cells of the film
-// around it. They are followed by the number of words and of blocks (from bit PACKED_BLOCKS), of one cell each or, with
-// PACKED_FOURS, of four; then the words; then the first cell of each block, as in flow/map_thick. A byte is an index into the cells of the
-// blocks. A texel without skin has the first byte PACKED_NONE.
+// A tile: its position in tiles, x | y << 16; its first piece and the one past its last; and the offset of its texels. A piece is a
+// connected part of the skin. Texels are 64 uints of four bytes: the index of the word that the texel shows, and the three cells of the
+// film around it. They are followed by the number of words and of blocks (from bit PACKED_BLOCKS), of one cell each or, with PACKED_FOURS,
+// of four; then the words; then the first cell of each block, as in flow/map_thick. A byte is an index into the cells of the blocks. A
+// texel without skin has the first byte PACKED_NONE.
 #define TILE_UINTS 4u
 #define PACKED_NONE 255u
 #define PACKED_BLOCKS 8u
@@ -44,6 +44,9 @@ namespace rivulet {
 #define MOST_NEAR 8u
 #define WET_EVERY 16u /* draws: interval at which a wet tile is drawn again, because it dries */
 #define ANY_EVERY 64u /* and a dry one, for what a drop left that went too fast to be seen in between */
+// A drop as it is drawn, 3 vec4: the ball about its foot, m; xyz along its way, as long as how far off the ball's middle the widest line of
+// its foot is, a share of the radius, w its height m; and how its back narrows, see map_drop.h.
+#define CAP_VECS 3u
 // The film's thickness, two half floats per uint, mm: the offset of a triangle's cells, of which the t-th begins at `first`.
 #define THICK_BEGIN(first, t) (2u * (((first) + (t)) >> 1u))
 STRUCT(FlowMapStep) {
@@ -75,8 +78,8 @@ STRUCT(FlowMapStep) {
     float inverseCorner;  // s/m: 1 / the speed at which a drop's back becomes a corner
     float inverseReach;   // 1/m
     uint coverFrom;       // texels before those whose cover flow/map_mips stores
-    uint unused1;
-    uint unused2;
+    float advancing;      // rad, contact angles
+    float receding;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FlowMapStep) % 16 == 0);

@@ -209,9 +209,9 @@ TEST(FlowMaps, ARunningDropIsElongatedBehind) {
     addSheet(skin, vec3(0, 0, 0), vec3(0.02F, 0, 0), vec3(0, 0.02F, 0), 5, vec2(0.0F), vec2(1, 0), vec2(0, 1));
     const dvec3 start(0.009, 0.011, 0), way = glm::normalize(dvec3(0.8, -0.6, 0)), aside(-way.y, way.x, 0);
     double before = 0.99;
-    for (const double speed : {0.0, 0.02, 0.06, 0.12}) {
+    for (const double speed : {0.0, 0.02, 0.06, 0.11, 0.13}) {
         Drawn d(skin, 512, still());
-        d.flow->add(nearestPoint(d.flow->mesh(), vec3(start)), 6 * kMicrolitre, vec3(way * speed));
+        d.flow->add(nearestPoint(d.flow->mesh(), vec3(start)), 4 * kMicrolitre, vec3(way * speed));
         d.stand();
         d.maps->draw(*d.flow);
         const std::vector<vec4> texels = d.texels();
@@ -237,7 +237,7 @@ TEST(FlowMaps, ARunningDropIsElongatedBehind) {
                 worst = std::max(worst, std::abs(gained - 0.25 * sum) / (0.47 * glm::length(across ? p.alongU : p.alongV)));
             }
         }
-        EXPECT_NEAR(volume / 6e-9, 1, 2e-3) << speed;
+        EXPECT_NEAR(volume / 4e-9, 1, 2e-3) << speed;
         EXPECT_LT(glm::length(middle / volume), 0.01 * half) << speed << ": the mass stays where the drop is";
         EXPECT_LT(worst, 0.02) << speed;
         const double slender = (ahead + behind) / (2 * half);
@@ -247,6 +247,43 @@ TEST(FlowMaps, ARunningDropIsElongatedBehind) {
         if (speed == 0.06) EXPECT_TRUE(slender > 1.5 && slender < 2) << slender;  // Le Grand, Daerr and Limat 2005, oval drops: 1.2 to 2
         EXPECT_LT(slender, 2.4) << speed;
         if (speed > 0.05) EXPECT_GT(behind, 1.2 * ahead) << speed << ": the tail is the longer part";
+    }
+}
+
+// A drop that is held on a vertical sheet sags: its front is steeper and nearer to its highest point than its back, by the angles; the
+// volume and its centre stay. On a level sheet it stays round.
+TEST(FlowMaps, AHeldDropSagsDownhill) {
+    Skin skin;
+    addSheet(skin, vec3(0, 0, 0), vec3(0.02F, 0, 0), vec3(0, 0.02F, 0), 5, vec2(0.0F), vec2(1, 0), vec2(0, 1));
+    const vec3 start(0.009F, 0.011F, 0);
+    for (const bool steep : {false, true}) {
+        Drawn d(skin, 512, still());
+        d.flow->add(nearestPoint(d.flow->mesh(), start), 4 * kMicrolitre);  // 4.07 would slide
+        for (int k = 0; k < 2; ++k) EXPECT_TRUE(d.flow->step({.gravity = steep ? vec3(0, -9.81F, 0) : vec3(0, 0, -9.81F)}, 1.0 / 60));
+        ASSERT_EQ(d.flow->drops()[0].velocity, vec3(0.0F));
+        d.maps->draw(*d.flow);
+        const std::vector<vec4> texels = d.texels();
+        double volume = 0, below = 0, above = 0, half = 0, top = 0, highest = 0;
+        dvec3 middle(0.0);
+        for (const Drawn::Place& p : d.places()) {
+            const vec4 t = texels[p.at];
+            if (t.z <= 0) continue;
+            const double share = double{t.z} * 1e-3 * p.area;
+            volume += share;
+            middle += share * dvec3(p.x - start);
+            below = std::max(below, double{start.y - p.x.y});
+            above = std::max(above, double{p.x.y - start.y});
+            half = std::max(half, std::abs(double{p.x.x - start.x}));
+            if (double{t.z} > highest) {
+                highest = double{t.z};
+                top = double{p.x.y - start.y};
+            }
+        }
+        EXPECT_NEAR(volume / 4e-9, 1, 2e-3);
+        EXPECT_LT(glm::length(middle / volume), 0.01 * half);
+        // (1 + tan 30 / tan 20) / 2: half the foot's length over half its width.
+        EXPECT_NEAR((below + above) / (2 * half), steep ? 1.29 : 1.0, 0.02);
+        EXPECT_NEAR((above - top) / (below + top), steep ? 1.59 : 1.0, 0.12) << "from the highest point back over front";
     }
 }
 
@@ -393,6 +430,7 @@ TEST(FlowMaps, TheFilmIsDrawnWhereItLies) {
     SurfaceFlowParams p;
     p.evaporation = 0;
     p.hold = 0;
+    p.pearls = false;  // it runs at 0.3 m/s
     Drawn d(skin, 512, p);
     d.flow->add(nearestPoint(d.flow->mesh(), vec3(0.01F, 0.036F, 0)), 8 * kMicrolitre);
     for (int k = 0; k < 120; ++k) {

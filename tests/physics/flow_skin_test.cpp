@@ -193,9 +193,7 @@ TEST(FlowBrim, FillsAndSpillsWhereItIsLowest) {
     EXPECT_EQ(l.added, 1200000U + 2400U * 8333U);
 }
 
-// `rivulet validate flow`, the quick size. One aim is missed: with the law of the 104 cP oil, the 10 cP oil slides 1.6 times as fast as
-// measured. Drag and retention of Le Grand's oils differ by more than their viscosities and angles explain; with its own row each oil is
-// exact.
+// `rivulet validate flow`, the quick size.
 TEST(FlowCase, HoldsItsTolerances) {
     auto device = cpu();
     CaseSettings settings;
@@ -205,12 +203,7 @@ TEST(FlowCase, HoldsItsTolerances) {
     const Result<Outcome> outcome = runFlow(settings);
     ASSERT_TRUE(outcome) << outcome.error().message;
     EXPECT_GT(outcome->findings.size(), 15U);
-    for (const Finding& f : outcome->findings) {
-        if (f.what == "sliding drop of 10 cP, law of 104 cP")
-            EXPECT_NEAR(f.error, 0.61, 0.05);
-        else
-            EXPECT_TRUE(f.pass()) << f.what << ": " << f.measured << " of " << f.reference;
-    }
+    for (const Finding& f : outcome->findings) EXPECT_TRUE(f.pass()) << f.what << ": " << f.measured << " of " << f.reference;
     settings.goOn = [](double) { return false; };
     EXPECT_TRUE(runFlow(settings)->findings.empty());
 }

@@ -104,6 +104,7 @@ TEST(Flow, PassesThroughTrianglesWithoutArea) {
                       {0, 2, 3, 0, 3, 1, 2, 4, 3, 2, 5, 6, 2, 6, 4, 4, 6, 7, 4, 7, 3}};
     SurfaceFlowParams p;
     p.hold = p.drag = p.airDrag = p.trail = 0;
+    p.pearls = false;
     SurfaceFlow flow = flowOn(*device, shape, p);
     EXPECT_EQ(flow.mesh().report.flat, 1U);
     for (const float x : {0.02F, 0.05F, 0.071F}) flow.add(nearestPoint(flow.mesh(), vec3(x, 0.09F, 0)), kMicrolitres, vec3(0.1F, -0.8F, 0));
@@ -160,6 +161,49 @@ TEST(Flow, SlidesDownASlopeByLeGrandsLaw) {
         const double steady = 1005 * volume * 9.81 * std::sin(a) / (60 * 2 * radius * 1.73e-3);
         EXPECT_NEAR(glm::length(drops[0].velocity) / steady, 1, 1e-3) << dt;
         EXPECT_NEAR(drops[0].position.z, -0.05F, 1e-5F);
+    }
+}
+
+// Cox 1986 and Voinov 1976: the force that the moving line adds, k (cos r' - cos a') for a small speed with theta^3 = theta_s^3 +- 9 Ca ln.
+TEST(Flow, WithAWallFrictionTheAnglesGiveTheDrag) {
+    SurfaceFlowParams p;
+    EXPECT_EQ(dragOf(p), 60);
+    p.viscosity = 0.1F;
+    p.wallFriction = 2.0e6F;  // a slip length of 50 nm
+    p.hold = 0.7F;
+    const double ca = 1e-6, ln = std::log(1e-3 / 50e-9), front = 60 * kPiD / 180, back = 40 * kPiD / 180;
+    const auto angle = [&](double rest, double sign) { return std::cbrt(rest * rest * rest + sign * 9 * ca * ln); };
+    const double more = std::cos(angle(back, -1)) - std::cos(angle(front, 1)) - std::cos(back) + std::cos(front);
+    EXPECT_NEAR(dragOf(p), 0.7 * more / ca, 1e-3 * dragOf(p));
+    p.viscosity = 1.0e6F;  // slips by more than its height
+    EXPECT_GT(dragOf(p), 0);
+}
+
+// Podgorski, Flesselles and Limat 2001: a drop that is faster than its back can recede sheds small ones, which stay behind. All volume is
+// there, and a quarter of the slots stays free.
+TEST(Flow, AFastDropShedsSmallOnes) {
+    const Shape wall = sheetShape(vec3(0, 0.4F, 0), vec3(0.02F, 0, 0), vec3(0, -0.4F, 0), 4, 40);
+    SurfaceFlowParams p;
+    p.hold = p.airDrag = p.trail = 0;
+    p.touch = 0.1F;
+    p.capacity = 16;
+    for (const double share : {1.4, 1.6}) {
+        auto device = cpu();
+        SurfaceFlow flow = flowOn(*device, wall, p);
+        flow.add(nearestPoint(flow.mesh(), vec3(0.01F, 0.39F, 0)), 8 * kMicrolitres);
+        const double slope = std::tan(25 * kPiD / 180), width = 2 * std::cbrt(6 * 8e-9 / (kPiD * slope * (3 + slope * slope)));
+        const double gravity = share * cornerSpeed(p) * 60 * width * 1.73e-3 / (1005 * 8e-9);
+        for (int k = 0; k < 90; ++k) EXPECT_TRUE(flow.step({.gravity = vec3(0, static_cast<float>(-gravity), 0)}, 1.0 / 60));
+        const std::vector<SkinDrop> drops = flow.drops();
+        EXPECT_EQ(drops.size(), share < 1.49 ? 1U : 12U) << share;
+        const SurfaceFlow::Ledger l = flow.ledger();
+        EXPECT_EQ(l.added, l.drops);
+        double least = 1, most = 0;
+        for (const SkinDrop& d : drops) {
+            least = std::min(least, d.volume);
+            most = std::max(most, d.volume);
+        }
+        if (share > 1.49) EXPECT_NEAR(most / least, 512, 12);
     }
 }
 

@@ -80,5 +80,7 @@ struct rivulet_skin {
     std::optional<rivulet::FlowMaps> maps;
     std::optional<rivulet::FlowLayer> layer;
     std::vector<rivulet::vec3> positions;
-    bool interrupted = false;  // its last step was: the drops are not valid any more
+    rivulet::Buffer moved;                // a vec4 a vertex, copied from the host's buffer; empty before the first such step
+    std::vector<rivulet::vec4> readBack;  // the same on its way to a device without OpenGL
+    bool interrupted = false;             // its last step was: the drops are not valid any more
 };

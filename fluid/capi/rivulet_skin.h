@@ -17,10 +17,18 @@ typedef struct rivulet_skin_options {
 } rivulet_skin_options;
 typedef struct rivulet_skin_inputs {
     size_t size;
-    const float* gravity;   /* m/s^2, in the world; NULL: (0, -9.81, 0) */
-    const float* wind;      /* m/s; NULL: none */
-    const float* to_world;  /* the mesh's frame -> the world, a matrix without scale; NULL: identity */
-    const float* positions; /* m, of all vertices of a mesh that deforms; NULL: as before */
+    const float* gravity;  /* m/s^2, in the world; NULL: (0, -9.81, 0) */
+    const float* wind;     /* m/s; NULL: none */
+    const float* to_world; /* the mesh's frame -> the world, a matrix without scale; NULL: identity */
+    /* m, of all vertices of a mesh that deforms; NULL: as before. Drops on skin that leaves the box of the mesh's own positions by more
+       than a quarter of the box's longest side stray and are counted as left: put what moves or turns the whole mesh into to_world. */
+    const float* positions;
+    /* The same for a mesh that the host deforms on the GPU, instead of `positions`: GL name of a buffer with a vec4 a vertex of the mesh,
+       in its order, xyz m in the mesh's frame, w unused. 0: none. It is read during the call, after all commands issued before it: a memory
+       barrier for the writes of a shader is included. Backend gl copies it on the GPU; cpu and cl read it back and so wait for the GPU.
+       A vertex that is not finite, or 1000 km from 0 or farther, stays where it was. RIVULET_BAD_INPUT: `positions` is set too, the context
+       has no OpenGL, or it is no buffer, too small, or mapped without GL_MAP_PERSISTENT_BIT. */
+    uint32_t positions_buffer;
 } rivulet_skin_inputs;
 typedef struct rivulet_skin_stats {
     size_t size;
@@ -37,8 +45,10 @@ RIVULET_API rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* pla
 /* Advances the skin by `seconds`; 0 or less: nothing happens. RIVULET_FAILED after rivulet_context_stop: while a stop is asked, nothing is
    stepped. If the stop interrupts a step, the drops are not valid any more: destroy the skin and create another. */
 RIVULET_API rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why);
-/* Updates the map, a GL texture over the mesh's uvs, rgba16f with mips: r, g the slope of the liquid's height (m a unit of u, of v), b the
-   height (mm), a the wetness, 0 to 1. */
+/* Updates the map, a GL texture over the mesh's uvs, map_size x map_size, rgba16f with mips, which repeats: r, g the slope of the liquid's
+   height (m a unit of u, of v), b the height (mm), a the wetness, 0 to 1. Texels without skin are 0. It shows the drops where the last step
+   began; before the first step it is empty. Its name is valid until the skin is destroyed, its content until the next call. Commands that
+   the host issues later in this OpenGL context see it without a barrier. RIVULET_BAD_INPUT: the context has no OpenGL. */
 RIVULET_API rivulet_status rivulet_skin_texture(rivulet_skin* skin, uint32_t* texture, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivulet_skin_stats* stats,
                                                  rivulet_error* why); /* waits for the device */

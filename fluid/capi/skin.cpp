@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <span>
 
 #include "engine/core/json.h"
+#include "engine/gpu/host_buffer.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
@@ -52,6 +56,47 @@ Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivul
     return ok();
 }
 
+// What a step uses: OpenGL on every backend, if the positions are in one of its buffers. Its inputs are not checked yet.
+Needs needsOf(const rivulet_skin_inputs* inputs) {
+    constexpr size_t kAt = offsetof(rivulet_skin_inputs, positions_buffer);
+    size_t size = 0;
+    uint32_t buffer = 0;
+    if (inputs != nullptr) std::memcpy(&size, inputs, sizeof size);
+    if (size >= kAt + sizeof buffer) std::memcpy(&buffer, reinterpret_cast<const std::byte*>(inputs) + kAt, sizeof buffer);
+    return buffer == 0 ? Needs::device : Needs::drawing;
+}
+
+Status checkPositionsBuffer(const rivulet_skin& skin, const rivulet_skin_inputs& in) {
+    if (in.positions != nullptr) return badInput("inputs.positions and inputs.positions_buffer are both set: give one of them");
+    if (!skin.context->gl.present())
+        return badInput("inputs.positions_buffer is set, and the context has no OpenGL: set rivulet_context_options.find");
+    const Result<size_t> bytes = gpu::hostBufferSize(in.positions_buffer, "inputs.positions_buffer");
+    if (!bytes) return bytes.error();
+    const size_t needed = skin.vertices * sizeof(vec4);
+    if (*bytes >= needed) return ok();
+    return badInput(
+        fmt::format("inputs.positions_buffer has {} bytes: a skin of {} vertices needs {}, a vec4 each", *bytes, skin.vertices, needed));
+}
+
+// The host's buffer in one of the device's: the host may write the next frame's positions while this step still runs.
+Status copyPositions(rivulet_skin& skin, uint32_t from) {
+    Device& device = *skin.context->device;
+    const size_t bytes = skin.vertices * sizeof(vec4);
+    if (!skin.moved) {
+        Result<Buffer> made = device.allocate(bytes);
+        if (!made) return made.error();
+        skin.moved = std::move(*made);
+    }
+    if (device.backend() == Backend::gl) {
+        gpu::copyHostBuffer(from, static_cast<uint32_t>(skin.moved.handle()), bytes);
+        return ok();
+    }
+    skin.readBack.resize(skin.vertices);
+    gpu::readHostBuffer(from, std::as_writable_bytes(std::span(skin.readBack)));
+    device.writeAll<vec4>(skin.moved, skin.readBack);
+    return ok();
+}
+
 }  // namespace
 
 rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin, rivulet_error* why) {
@@ -89,7 +134,7 @@ rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double m
 }
 
 rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why) {
-    return with(skin, why, Needs::device, [&]() -> Status {
+    return with(skin, why, needsOf(inputs), [&]() -> Status {
         const Result<rivulet_skin_inputs> input = readStruct(inputs, "rivulet_skin_inputs", "inputs");
         if (!input) return input.error();
         const rivulet_skin_inputs& in = *input;
@@ -108,11 +153,17 @@ rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* 
             return badInput(fmt::format("inputs.gravity or inputs.wind is not finite, or beyond {} m/s^2 or m/s", kMostGravity));
         if (in.to_world != nullptr && !areWithin({in.to_world, 16}, kMostDistance))
             return badInput(fmt::format("inputs.to_world is not finite, or beyond {}", kMostDistance));
+        if (in.positions_buffer != 0)
+            if (Status can = checkPositionsBuffer(*skin, in); !can) return can;
         if (!(seconds > 0)) return ok();
         Device& device = *skin->context->device;
         device.goOn();  // another owner of buffers may have been interrupted
         if (skin->interrupted) return failed("an earlier step of the skin was interrupted: create it anew");
         if (device.stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
+        if (in.positions_buffer != 0) {
+            if (Status copied = copyPositions(*skin, in.positions_buffer); !copied) return copied;
+            to.moved = &skin->moved;
+        }
         const Status stepped = skin->flow->step(to, seconds);
         if ((skin->interrupted = device.interrupted())) return failed("the step was interrupted: end the stop, then create the skin anew");
         return stepped;

@@ -61,6 +61,113 @@ static void normals_are_found_where_they_are_drawn(rivulet_context* context, con
     CHECK(memcmp(dry, wet, sizeof dry) == 0);
 }
 
+enum { MAP = 64, SIDE = 11, PLACES = SIDE * SIDE };
+static float maps[2][4 * MAP * MAP];
+
+/* Where the liquid of a map is, in v, 0 to 1. */
+static double middle_of(const float* texels) {
+    double sum = 0, height = 0;
+    for (int k = 0; k < MAP * MAP; ++k) {
+        height += (double)texels[4 * k + 2];
+        sum += (double)texels[4 * k + 2] * (k / MAP + 0.5) / MAP;
+    }
+    return sum / height;
+}
+
+/* A compute shader tips up a plate of 10 cm about its middle: its drop runs down, as on a plate that the host tips up itself. */
+static void a_skin_follows_a_buffer(const char* backend) {
+    rivulet_context* context = NULL;
+    const rivulet_context_options o = {.size = sizeof o, .find = eglGetProcAddress, .backend = backend};
+    DONE(rivulet_context_create(&o, &context, &why));
+    static float at[3 * PLACES], uvs[2 * PLACES], moved[4 * PLACES], places[3 * PLACES];
+    static uint32_t triangles[6 * (SIDE - 1) * (SIDE - 1)];
+    for (int k = 0; k < PLACES; ++k) {
+        uvs[2 * k] = (float)(k % SIDE) / (SIDE - 1);
+        uvs[2 * k + 1] = (float)(k / SIDE) / (SIDE - 1);
+        at[3 * k] = 0.1F * uvs[2 * k];
+        at[3 * k + 2] = -0.1F * uvs[2 * k + 1];
+    }
+    for (uint32_t k = 0; k < (SIDE - 1) * (SIDE - 1); ++k) {
+        const uint32_t low = k / (SIDE - 1) * SIDE + k % (SIDE - 1), high = low + SIDE;
+        const uint32_t tile[6] = {low, low + 1, high + 1, low, high + 1, high};
+        memcpy(triangles + 6 * k, tile, sizeof tile);
+    }
+    const rivulet_mesh plate = {.size = sizeof plate,
+                                .positions = at,
+                                .vertices = PLACES,
+                                .indices = triangles,
+                                .indices_count = sizeof triangles / sizeof *triangles,
+                                .uvs = uvs};
+    const rivulet_skin_options skin_options = {.size = sizeof skin_options, .mesh = &plate, .map_size = MAP};
+    rivulet_skin* skins[2] = {NULL, NULL}; /* from the buffer; from host memory */
+    for (int k = 0; k < 2; ++k) {
+        DONE(rivulet_skin_create(context, &skin_options, &skins[k], &why));
+        DONE(rivulet_skin_add(skins[k], (const float[3]){0.05F, 0, -0.07F}, 12, &why));
+    }
+    const char* source = "#version 450\nlayout(local_size_x = 121) in; layout(binding = 3, std430) buffer Moved { vec4 moved[]; };"
+                         "uniform float tilt; void main() { uint i = gl_LocalInvocationIndex; float away = 0.01 * float(i / 11u) - 0.05;"
+                         "moved[i] = vec4(0.01 * float(i % 11u), away * sin(tilt), -0.05 - away * cos(tilt), 7.0); }";
+    const GLuint program = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source);
+    GLuint buffers[2];
+    glCreateBuffers(2, buffers);
+    glNamedBufferStorage(buffers[0], sizeof moved, NULL, 0);
+    glNamedBufferStorage(buffers[1], 63, NULL, GL_MAP_READ_BIT);
+    double before = 0, after = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+        glUseProgram(program);
+        glProgramUniform1f(program, glGetUniformLocation(program, "tilt"), fminf(1.4F, 0.05F * (float)frame));
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, buffers[0]);
+        glDispatchCompute(1, 1, 1);
+        const rivulet_skin_inputs in = {.size = sizeof in, .positions_buffer = buffers[0]};
+        DONE(rivulet_skin_step(skins[0], &in, 1.0 / 60, &why));
+        GLint used = 0;
+        glGetIntegerv(GL_CURRENT_PROGRAM, &used);
+        CHECK((GLuint)used == program);
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        glGetNamedBufferSubData(buffers[0], 0, sizeof moved, moved);
+        for (int k = 0; k < 3 * PLACES; ++k) places[k] = moved[4 * (k / 3) + k % 3];
+        const rivulet_skin_inputs same = {.size = sizeof same, .positions = places};
+        DONE(rivulet_skin_step(skins[1], &same, 1.0 / 60, &why));
+        for (int k = 0; k < 2; ++k) {
+            uint32_t map = 0;
+            DONE(rivulet_skin_texture(skins[k], &map, &why));
+            glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+            glGetTextureImage(map, 0, GL_RGBA, GL_FLOAT, sizeof maps[k], maps[k]);
+        }
+        if (frame == 1) before = middle_of(maps[0]);
+        after = middle_of(maps[0]);
+        CHECK(memcmp(maps[0], maps[1], sizeof maps[0]) == 0);
+    }
+    printf("%s: a drop on a plate that a shader tips up is at v = %.2f, then %.2f\n", backend, before, after);
+    CHECK(fabs(before - 0.7) < 0.03 && after < 0.5);
+    for (int k = 0; k < 2; ++k) {
+        rivulet_skin_stats s = {.size = sizeof s};
+        DONE(rivulet_skin_stats_of(skins[k], &s, &why));
+        CHECK(fabs(s.added - 12e-9) < 1e-14 && fabs(s.added - s.on_skin - s.left - s.evaporated - s.refused) < 1e-14);
+    }
+    rivulet_skin_inputs wrong = {.size = sizeof wrong, .positions_buffer = buffers[1]};
+    REFUSED(rivulet_skin_step(skins[0], &wrong, 1.0 / 60, &why), "has 63 bytes: a skin of 121 vertices needs 1936");
+    wrong.positions_buffer = 123456;
+    REFUSED(rivulet_skin_step(skins[0], &wrong, 1.0 / 60, &why), "is 123456, which is not the name of a buffer");
+    wrong.positions_buffer = buffers[0];
+    wrong.positions = at;
+    REFUSED(rivulet_skin_step(skins[0], &wrong, 1.0 / 60, &why), "both set");
+    GLuint large = 0;
+    glCreateBuffers(1, &large);
+    glNamedBufferStorage(large, sizeof moved, NULL, GL_MAP_READ_BIT);
+    CHECK(glMapNamedBuffer(large, GL_READ_ONLY) != NULL);
+    const rivulet_skin_inputs held = {.size = sizeof held, .positions_buffer = large};
+    REFUSED(rivulet_skin_step(skins[0], &held, 1.0 / 60, &why), "is mapped");
+    glUnmapNamedBuffer(large);
+    for (int k = 0; k < 2; ++k) rivulet_skin_destroy(skins[k]);
+    CHECK(glIsBuffer(buffers[0])); /* the host's */
+    rivulet_context_destroy(context);
+    glUseProgram(0);
+    glDeleteBuffers(2, buffers);
+    glDeleteBuffers(1, &large);
+    glDeleteProgram(program);
+}
+
 int main(void) {
     rivulet_context* context = NULL;
     rivulet_context_options options = {.size = sizeof options, .find = eglGetProcAddress};
@@ -207,6 +314,8 @@ int main(void) {
     rivulet_world_destroy(world);
     CHECK(!glIsTexture(map) && !glIsBuffer(buffers.position));
     rivulet_context_destroy(context);
+    a_skin_follows_a_buffer("cpu");
+    a_skin_follows_a_buffer("gl");
     CHECK(glGetError() == GL_NO_ERROR);
     printf("%s\n", failures == 0 ? "all holds" : "something does not hold");
     return failures == 0 ? 0 : 1;

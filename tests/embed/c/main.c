@@ -519,6 +519,8 @@ static void drops_run_down_a_skin(rivulet_context* context) {
     REFUSED(rivulet_skin_add(NULL, place, 1, &why), "skin is NULL");
     REFUSED(rivulet_skin_step(NULL, NULL, 1, &why), "skin is NULL");
     REFUSED(rivulet_skin_step(skin, NULL, NAN, &why), "finite");
+    const rivulet_skin_inputs of_gl = {.size = sizeof of_gl, .positions_buffer = 1};
+    REFUSED(rivulet_skin_step(skin, &of_gl, 1.0 / 60, &why), "inputs.positions_buffer is set, and the context has no OpenGL");
     REFUSED(rivulet_skin_stats_of(skin, NULL, &why), "NULL");
     REFUSED(rivulet_skin_stats_of(NULL, &s, &why), "NULL");
     rivulet_skin_destroy(skin);

@@ -154,7 +154,7 @@ static void report(rivulet_skin* skin, GLuint map, GLuint moved) {
     double u = 0, v = 0, held = 0, low = 1;
     for (int k = 0; k < MAP * MAP; ++k) {
         const double s = (k % MAP + 0.5) / MAP, t = (k / MAP + 0.5) / MAP, height = (double)texels[k][2];
-        wet += texels[k][3] > 0.05F;
+        wet += texels[k][3] > 0.5F;
         if (height > 0.05 && s > 0.5 && t < low) low = t;
         if (s < 0.5) u += s * height, v += t * height, held += height;
     }

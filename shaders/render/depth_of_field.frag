@@ -7,7 +7,7 @@ uniform sampler2D fluidDepth;  // m
 uniform bool water;
 uniform vec3 blur;  // pixels: the radius of a disc is |x - y / depth|, at most z
 layout(location = 0) out vec4 colour;
-const int kSamples = 24;
+const int kSamples = 32;
 
 float depthAt(ivec2 p) {
     float d = depthOfWindow(texelFetch(sceneDepth, p, 0).r);
@@ -20,10 +20,11 @@ void main() {
     vec4 own = texelFetch(sceneColour, here, 0);
     float depth = depthAt(here), disc = discAt(depth);
     // A disc's light is spread over its area; a sample stands for as many pixels as there are for each.
-    float weights = 1.0 / max(3.1415927 * disc * disc, 1.0), each = blur.z * blur.z / float(kSamples), turn = 6.2831853 * pixelNoise(gl_FragCoord.xy);
+    float weights = 1.0 / max(3.1415927 * disc * disc, 1.0), turn = 6.2831853 * pixelNoise(gl_FragCoord.xy);
     vec3 sum = weights * own.rgb;
     for (int k = 0; k < kSamples; ++k) {
-        float away = blur.z * sqrt((float(k) + 0.5) / float(kSamples)), angle = turn + 2.3999632 * float(k);
+        // Denser towards the middle, where small discs are: each sample stands for its share of the area, over pi.
+        float away = blur.z * (float(k) + 0.5) / float(kSamples), angle = turn + 2.3999632 * float(k), each = 2.0 * away * blur.z / float(kSamples);
         ivec2 at = clamp(here + ivec2(round(away * vec2(cos(angle), sin(angle)))), ivec2(0), last);
         float there = depthAt(at), size = discAt(there);
         if (there > depth) size = min(size, disc);  // what lies behind does not cover what lies before it

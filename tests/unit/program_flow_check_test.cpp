@@ -57,7 +57,7 @@ TEST(ProgramFlowCheck, TheDefaultHeadIsReady) {
     Scratch scratch;
     const Outcome outcome = runProgram({"flow-check", (kMeshes / "head/head.glb").string(), "--json", "c.json"}, in(scratch));
     expectSays(outcome, 0,
-               {"0.329 high", "metres, as a scene needs", "Up is +Y, and the face looks along +Z", "runs over `skin`", "45600 in 1 piece",
+               {"0.341 high", "metres, as a scene needs", "Up is +Y, and the face looks along +Z", "runs over `skin`", "45600 in 1 piece",
                 "272 open edges", "11: blinkLeft", "given by", "head.json", "Two eyeballs", "eyeLeft (eye)", "Its tip is at",
                 "lowest point is at", "Ready:"});
     const Json::Value json = readJson(scratch.path() / "c.json");

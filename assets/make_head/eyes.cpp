@@ -306,9 +306,9 @@ Part makeCaruncle(const Eye& eye) {
         for (uint32_t i = 0; i < kAround; ++i) {
             double r = static_cast<double>(j) / kRows, a = 2 * kPi * i / kAround;
             EyePoint e;
-            double out = 0.27 * r * std::cos(a);
+            double out = 0.33 * r * std::cos(a);
             e.out = centre.out + out;
-            e.up = centre.up + 0.17 * r * std::sin(a);
+            e.up = centre.up + 0.22 * r * std::sin(a);
             double lump = 0.012 * std::sin(3 * a + 1) * std::sin(kPi * r);
             e.height = 0.10 * std::pow(1 - r * r, 1.2) - 0.02 + lump - 0.55 * std::min(out, 0.0) * (1 - 0.5 * r);
             part.positions.push_back(eye.placed(e));

@@ -271,7 +271,9 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         double flush = std::max({1.0 * rim * byEye, 0.75 * around, 0.85 * corner, 0.85 * nose, 0.8 * wing, 0.45 * cheek, 0.3 * chin,
                                  0.25 * lip, 0.35 * bell(m, {0, 5.6, 5.6}, {2.2, 1.0, 2.0})});
         put(skin.flush, i, 0, flush * (0.75 + 0.35 * blotch + 0.25 * speck) * face);
-        put(skin.flush, i, 1, std::max(smoothstep(0.02, 0.35, t.weight[kMouth]), 0.8 * glm::clamp(nostril, 0.0, 1.0)));
+        // Where lips meet, and in the mouth and the nostrils.
+        double meets = lip * smoothstep(0.5, 0.85, std::abs(glm::normalize(t.normal).y));
+        put(skin.flush, i, 1, std::max({smoothstep(0.02, 0.35, t.weight[kMouth]), 0.9 * meets, 0.8 * glm::clamp(nostril, 0.0, 1.0)}));
 
         // Relief, in mm.
         double pores =

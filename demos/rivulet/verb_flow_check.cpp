@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <json/json.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -52,8 +53,10 @@ Result<FlowParams> paramsOf(const CheckRequest& request) {
         int end = 0;
         vec3& r = params.rotation;
         if (std::sscanf(request.rotation.c_str(), "%f,%f,%f%n", &r.x, &r.y, &r.z, &end) != 3 ||
-            static_cast<size_t>(end) != request.rotation.size() || !isFinite(r) || !(glm::length(r) < 1080))
-            return badInput(fmt::format("--rotation must be three angles in degrees, for example -90,0,0, but is '{}'", request.rotation));
+            static_cast<size_t>(end) != request.rotation.size() || !isFinite(r) ||
+            std::max({std::abs(r.x), std::abs(r.y), std::abs(r.z)}) > 360)
+            return badInput(
+                fmt::format("--rotation must be three angles in degrees, -360 to 360, for example -90,0,0, but is '{}'", request.rotation));
     }
     return params;
 }

@@ -32,7 +32,9 @@ void placeSoftboxes(FrameParams& f, const Studio& studio) {
         const float perRadiance = 4.0F * boxes[k].halfSize.x * boxes[k].halfSize.y;
         const float bright = std::max({colour.x, colour.y, colour.z}) * boxes[k].share / perRadiance;
         const float own = std::max({boxes[k].radiance.x, boxes[k].radiance.y, boxes[k].radiance.z, 1e-4F});
-        f.boxRadiance[k] = vec4(boxes[k].radiance * std::max(1.0F, bright / own), boxes[k].share > 0 ? perRadiance / kPi : 0.0F);
+        // A faint light is no fainter in reflections, so that nothing jumps where it is switched off.
+        const float times = bright / own;
+        f.boxRadiance[k] = vec4(boxes[k].radiance * std::max(1.0F, times), perRadiance / kPi * std::min(1.0F, times));
     }
 }
 

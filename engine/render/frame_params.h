@@ -15,7 +15,7 @@ struct Studio {
     float floorHeight = 0.0F;  // m
     float tiles = 0.0F;        // m, side of the floor's square tiles; 0: a plain floor
     bool showFloor = true;
-    float fill = 0.0F, rim = 0.0F;  // matte light of the softboxes beside and behind, as shares of the key light's; 0: only reflected
+    float fill = 0.0F, rim = 0.0F;  // light of the softboxes beside and behind, as shares of the key light's; 0: only reflected
     Bounds shown;                   // m; the visible content: the floor fades out around it
 };
 

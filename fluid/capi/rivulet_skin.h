@@ -11,7 +11,7 @@ extern "C" {
 
 typedef struct rivulet_skin_options {
     size_t size;
-    const rivulet_mesh* mesh; /* with uvs; their charts must not overlap: a notice says how much does */
+    const rivulet_mesh* mesh; /* with uvs; their charts must not overlap: above 2 % a notice says how much does */
     const char* json;         /* the liquid: {"advancing": 60, ...}, as flow.N.liquid in docs/parameters.md; NULL: tears */
     int32_t map_size;         /* texels of the map's edge, a power of two; 0: 1024 */
 } rivulet_skin_options;

@@ -233,7 +233,7 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
             }
             for (size_t side = 0; side < 2; ++side)
                 for (size_t m = 0; m < part.morphs.size(); ++m)
-                    if (part.morphs[m].name == kBrimMorphs[side]) d.brimMorph[side] = static_cast<int>(m);
+                    if (&part != skin && part.morphs[m].name == kBrimMorphs[side]) d.brimMorph[side] = static_cast<int>(m);
             if (!part.grips.empty()) d.bones = model.boneMatrices(part, stand);
             d.deformer->run({}, d.bones);
             node.deformer = d.deformer;
@@ -287,10 +287,10 @@ std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
             "{} has no marks of {}: a source of kind {} needs marks; use spot, strewn or rain, or give `marks` (`rivulet flow-check {}`)",
             params_.mesh, source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind, params_.mesh);
     constexpr float kMostOfAnEye = 1.0e5F;  // microlitres a minute
-    if (source.rate > kMostOfAnEye)
+    if (source.rate * params_.amount > kMostOfAnEye)
         return fmt::format(
             "a source of kind {} lets {:.3g} ul a minute out, and an eye no more than {:.0f}: lower its rate, or use spot or rain",
-            source.kind, source.rate, kMostOfAnEye);
+            source.kind, source.rate * params_.amount, kMostOfAnEye);
     return {};
 }
 
@@ -383,7 +383,9 @@ void FlowComponent::apply(const FlowParams& params) {
     }
 }
 
-bool FlowComponent::needsNew(const FlowParams& params) const { return params.expression.size() != params_.expression.size(); }
+bool FlowComponent::needsNew(const FlowParams& params) const {
+    return params.expression.size() != params_.expression.size() || (needsMarks(params) && !needsMarks(params_));
+}
 
 SkinPoint FlowComponent::somewhere(const FlowSourceParams& source, Source& state) {
     const FlowMesh& mesh = flow_->mesh();

@@ -49,7 +49,7 @@ class FlowComponent {
     const ThesisPicture& picture() const { return picture_; }
     Bounds bounds() const { return placed_->bounds(); }  // m, world
 
-    // Where tears and other spots start now; m, world. Waits for the device.
+    // Where tears and other spots start, on the skin as placed() last saw it; m, world.
     struct TearPoint {
         size_t source = 0;
         vec3 world{0.0F};

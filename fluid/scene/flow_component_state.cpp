@@ -10,12 +10,13 @@ struct FlowComponent::Snapshot {
     std::vector<std::string> noticed;
     uint64_t emitted = 0;
     double acted = 0;
+    std::array<float, 2> lidsFull{};
     std::shared_ptr<const SurfaceFlow::Snapshot> flow;
 };
 
 std::shared_ptr<const FlowComponent::Snapshot> FlowComponent::save() const {
     return std::make_shared<const Snapshot>(
-        Snapshot{placed_->time(), placed_->toWorld(), sources_, noticed_, emitted_, acted_, flow_->save()});
+        Snapshot{placed_->time(), placed_->toWorld(), sources_, noticed_, emitted_, acted_, *lidsFull_, flow_->save()});
 }
 
 Status FlowComponent::restore(const Snapshot& snapshot) {
@@ -25,6 +26,7 @@ Status FlowComponent::restore(const Snapshot& snapshot) {
     emitted_ = snapshot.emitted;
     around_ = {};
     acted_ = snapshot.acted;
+    *lidsFull_ = snapshot.lidsFull;
     bend(acted_);
     return flow_->restore(*snapshot.flow);
 }

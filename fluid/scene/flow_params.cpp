@@ -133,7 +133,10 @@ void FlowParams::visit(ParamVisitor& v) {
     v.value({"pace", "", "speed of the expression; 1: as its periods say, 0: it stands still", 0, 5}, pace);
     v.value({"expressive", "", "factor on all of expression; 0 = none", 0, 1}, expressive);
     v.value({.name = "marble", .doc = "shows the mesh as a statue: all its parts are of one marble, and it has no hair"}, marble);
-    v.value({"redness", "", "how red crying makes the eyes, their lids and the nose; half at the start, all after 20 ul of tears", 0, 1},
+    v.value({"redness", "",
+             "how red the eyes, their lids and the nose become; half of it is there at once, the rest comes with the first 20 to 60 ul of "
+             "all sources",
+             0, 1},
             redness);
     v.list({.name = "expression", .doc = "weights of the mesh's morph targets"}, expression);
     v.list({.name = "sources", .doc = "sources of drops"}, sources);

@@ -78,7 +78,8 @@ struct FlowParams {
     float pace = 1;        // of the expression: seconds of it a second
     float expressive = 1;  // factor of all weights in expression
     bool marble = false;   // a statue: all parts of one marble, without hair
-    float redness = 0;     // 0..1: of the skin around eyes and nose and of the whites, at last; half of it is there at the start
+    float redness =
+        0;  // 0..1: of the skin around eyes and nose and of the whites, at last; half of it at once, the rest with what is emitted
     std::vector<ExpressionParams> expression;
     std::vector<FlowSourceParams> sources;
     RegionParams regions;

@@ -36,6 +36,16 @@ void widenStrands(ModelPart& part) {
     part.material.strand = 1.0F / kWider;
 }
 
+// Whether all vertices are pairs across ribbons, as make_head writes hair: u from just above a whole number to just below the next.
+bool onRibbons(const Mesh& mesh) {
+    if (mesh.uvs.empty() || mesh.uvs.size() % 2 != 0) return false;
+    for (size_t i = 0; i + 1 < mesh.uvs.size(); i += 2) {
+        const vec2 a = mesh.uvs[i], b = mesh.uvs[i + 1];
+        if (a.y != b.y || b.x - a.x < 0.9F || std::floor(a.x) != std::floor(b.x)) return false;
+    }
+    return true;
+}
+
 // m, from the eyeball's centre to the white or the cornea.
 float eyeSurface(const EyeLook& eye, const vec3& direction) {
     const float forward = glm::dot(direction, eye.sight);
@@ -132,7 +142,7 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
     }
     part.mesh.normals.assign(part.mesh.positions.size(), eye.sight);
     part.material.baseColour = vec3(1.0F);
-    part.material.opacity = 0.10F;
+    part.material.opacity = 0.02F;
     part.material.roughness = 0.04F;
     part.material.blended = true;
     return part;
@@ -174,13 +184,13 @@ Status dressHead(Model& head, const std::string& folder) {
             part.material.doubleSided = true;
         }
         if (part.name.starts_with("lashes")) widenStrands(part);
-        if (part.materialName == "teeth" || part.materialName == "tongue") {  // little light from around reaches into a mouth
+        if ((part.name == "teeth" || part.name == "tongue") && !part.material.occlusion) {  // little light from around reaches into a mouth
             auto shade = std::make_shared<Image>();
             shade->width = shade->height = 1;
             shade->rgba = {70, 70, 70, 255};
             part.material.occlusion = shade;
         }
-        if (part.materialName == "hair") {
+        if ((part.name == "hair" || part.name == "brows") && onRibbons(part.mesh)) {
             part.material.blended = true;
             part.material.strand = kHairWidth;
             part.material.strands = part.name == "brows" ? kBrowHairs : kHairs;

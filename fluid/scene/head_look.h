@@ -20,6 +20,8 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
 // names begin with `eye` and that are not blended become eyes, `caruncle` flesh, `lashes` soft-edged hairs if they are ribbons whose u runs
 // across. Parts that are not there are no error; a picture that is damaged is. Each eye gets a tear line, as parts `tearLine` + what
 // follows `eye` in its name.
+// Parts `hair` and `brows` on ribbons (a pair of vertices across each, see Material::strand) become hairs; `teeth` and `tongue` without a
+// picture of occlusion stand in the shade of a mouth.
 Status dressHead(Model& head, const std::string& folder);
 
 }  // namespace rivulet

@@ -72,8 +72,8 @@ std::shared_ptr<const Image> moved(const std::shared_ptr<const Image>& image, co
 }  // namespace
 
 bool movePictures(Material& m, std::span<const vec2> from, std::span<const vec2> to, int size) {
-    const bool any =
-        m.colour || m.metallicRoughness || m.occlusion || m.glow || m.normals || (m.skin && (m.skin->relief || m.skin->regions));
+    const bool any = m.colour || m.metallicRoughness || m.occlusion || m.glow || m.normals ||
+                     (m.skin && (m.skin->relief || m.skin->regions || m.skin->flushes));
     if (!any) return false;
     const std::vector<dvec2> places = placesOf(from, to, size);
     for (std::shared_ptr<const Image>* image : {&m.colour, &m.metallicRoughness, &m.occlusion, &m.glow})
@@ -83,6 +83,7 @@ bool movePictures(Material& m, std::span<const vec2> from, std::span<const vec2>
         auto skin = std::make_shared<SkinLook>(*m.skin);
         skin->relief = moved(skin->relief, places, size);
         skin->regions = moved(skin->regions, places, size);
+        skin->flushes = moved(skin->flushes, places, size);
         m.skin = std::move(skin);
     }
     return true;

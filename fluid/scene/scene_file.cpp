@@ -31,6 +31,22 @@ VisitFn visiting(SceneFile& scene) {
     return [&scene](ParamVisitor& v) { scene.visit(v); };
 }
 
+// "", or which of the sliders is no parameter. For a file that is read: a later edit may remove what a slider is for.
+std::string wrongSlider(const SceneFile& scene) {
+    if (scene.sliders.empty()) return "";
+    SceneFile copy = scene;
+    const std::map<std::string, std::string> known = paramTexts(visiting(copy));
+    std::vector<std::string> names;
+    for (const auto& [name, text] : known) names.push_back(name);
+    for (const std::string& path : slidersOf(scene.sliders))
+        if (!known.contains(path)) {
+            const std::string near = nearestName(path, names);
+            return fmt::format("sliders names {}, which is no parameter{}", excerpt(path),
+                               near.empty() ? "; `rivulet list --parameters` names them" : fmt::format("; did you mean {}?", near));
+        }
+    return "";
+}
+
 // "", or which values contradict each other. The range of each value was checked when it was read.
 std::string contradiction(const SceneFile& scene) {
     const BoxParams& box = scene.fluid.box;
@@ -62,18 +78,6 @@ std::string contradiction(const SceneFile& scene) {
     if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must differ from camera.position", shown(scene.camera.target));
     if (glm::length(scene.light.direction) < 1.0e-6F)
         return fmt::format("light.direction is {}: its length must not be 0", shown(scene.light.direction));
-    if (!scene.sliders.empty()) {
-        SceneFile copy = scene;
-        const std::map<std::string, std::string> known = paramTexts(visiting(copy));
-        std::vector<std::string> names;
-        for (const auto& [name, text] : known) names.push_back(name);
-        for (const std::string& path : slidersOf(scene.sliders))
-            if (!known.contains(path)) {
-                const std::string near = nearestName(path, names);
-                return fmt::format("sliders names {}, which is no parameter{}", excerpt(path),
-                                   near.empty() ? "; `rivulet list --parameters` names them" : fmt::format("; did you mean {}?", near));
-            }
-    }
     return "";
 }
 
@@ -289,6 +293,7 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
         if (Status set = setParam(assignment, visit); !set)
             return withNewName(badInput("--set " + assignment + ": " + set.error().message));
     if (Status sense = checkScene(scene); !sense) return badInput(*file + ": " + sense.error().message);
+    if (const std::string wrong = wrongSlider(scene); !wrong.empty()) return badInput(*file + ": " + wrong);
     return scene;
 }
 

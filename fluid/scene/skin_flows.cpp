@@ -44,8 +44,11 @@ bool SkinFlows::needsNew(const SceneFile& scene) const {
     return false;
 }
 
-void SkinFlows::apply(const SceneFile& scene) {
-    for (size_t k = 0; k < std::min(skins_.size(), scene.flow.size()); ++k) skins_[k]->apply(scene.flow[k]);
+void SkinFlows::apply(const SceneFile& scene, Scene& nodes) {
+    for (size_t k = 0; k < std::min(skins_.size(), scene.flow.size()); ++k) {
+        skins_[k]->apply(scene.flow[k]);
+        skins_[k]->placeNode(nodes);  // its look, also while the run is paused
+    }
 }
 
 Status SkinFlows::reset(const SceneFile& scene, Device& device, Scene& nodes, const Log& log) {
@@ -93,7 +96,8 @@ double SkinFlows::expectedDeposit(const SceneFile& scene, double seconds) {
     if (scene.flow.empty() || (scene.fluid.blocks.empty() && scene.emitters.empty())) return 0;
     double volume = std::pow(double{scene.fluid.spacing}, 3);
     for (const FlowParams& skin : scene.flow)
-        for (const FlowSourceParams& source : skin.sources) volume += double{source.rate} * kCubicMillimetre / 60 * seconds;
+        for (const FlowSourceParams& source : skin.sources)
+            volume += double{skin.amount} * double{source.rate} * kCubicMillimetre / 60 * seconds;
     return volume;
 }
 

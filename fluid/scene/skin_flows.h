@@ -18,7 +18,7 @@ class SkinFlows {
     Status create(const SceneFile& scene, Device& device, Scene& nodes, const Log& log);
     bool empty() const { return skins_.empty(); }
     bool needsNew(const SceneFile& scene) const;
-    void apply(const SceneFile& scene);
+    void apply(const SceneFile& scene, Scene& nodes);
     // Restarts. Error: as create.
     Status reset(const SceneFile& scene, Device& device, Scene& nodes, const Log& log);
 

@@ -90,7 +90,7 @@ void Session::apply(const SceneFile& scene) {
     if (budget_) applySetting(budget_->setting(), scene_);
     report(world_->setParams(simulated(scene_)));
     report(world_->setSources(sources_.now(scene_)));
-    flows_.apply(scene_);
+    flows_.apply(scene_, solids_.nodes());
     report(world_->setSurfaces(SceneSolids::surfaces(scene_)));
     solids_.apply(scene_);
 }

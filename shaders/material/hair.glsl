@@ -32,9 +32,11 @@ void shadeHair(vec3 along, vec3 normal, vec3 toEye, vec3 albedo, vec3 falling, f
     matte = albedo * (0.3183099 * lobes.x * falling + ambient(normal) * open);
     vec3 tint = sqrt(max(albedo, 0.0));
     shine = (0.05 * lobes.y + 0.25 * albedo * lobes.z) * falling;
+#if !defined(ENVIRONMENT_MAP)
     for (int k = 1; k < 3; ++k) {
         vec3 box = hairLobes(along, normal, toEye, frame.boxTowards[k].xyz);
         shine += (0.05 * box.y + 0.25 * albedo * box.z) * frame.boxRadiance[k].rgb * (3.1415927 * frame.boxRadiance[k].w * open);
     }
+#endif
     shine += 0.02 * tint * ambient(normal) * open;
 }

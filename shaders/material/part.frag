@@ -107,7 +107,9 @@ void main() {
     lit = mix(1.0, lit, smoothstep(0.0, 0.4, nl));  // near the terminator the table is more exact than the shadow map
     vec3 through = mix(vec3(lit), vec3(sqrt(lit)), vec3(0.9, 0.3, 0.0));  // red bleeds into a shadow's edge
     vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
-    vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * vec3(mix(open, sqrt(open), 0.3), open, open);
+    // Light that skin reflects to skin fills what is occluded, with its colour (Jimenez et al. 2016, multi-bounce occlusion).
+    vec3 lessOccluded = max(vec3(open), ((open * (2.0404 * albedo.rgb - 0.3324) - 4.7951 * albedo.rgb + 0.6417) * open + 2.7552 * albedo.rgb + 0.6903) * open);
+    vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * lessOccluded;
     // Thin parts: attenuation of the light between its entry and this point.
     vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.16 * open * open * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
@@ -194,7 +196,7 @@ void main() {
 #endif
 #if defined(BLENDED)
     if (strand.x > 0.0) {
-        shadeHair(normalize(t.dv), normalize(normalWorld), toEye, albedo.rgb, falling * lit, open, matte, shine);
+        shadeHair(dot(t.dv, t.dv) > 0.0 ? normalize(t.dv) : vec3(0.0, 1.0, 0.0), normalize(normalWorld), toEye, albedo.rgb, falling * lit, open, matte, shine);
         shine *= albedo.a;
     }
     colour = vec4(matte * albedo.a + shine, albedo.a);  // specular light is kept where the body is transparent

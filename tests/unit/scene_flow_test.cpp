@@ -342,6 +342,24 @@ TEST(SceneFlow, AStatueIsOfMarbleWithoutHair) {
     EXPECT_GE(shown, 3U) << "the skin and both eyes";
 }
 
+// A change of the look is seen at once, also while the run is paused.
+TEST(SceneFlow, RednessIsAppliedWithoutAStep) {
+    auto device = cpu();
+    Result<std::unique_ptr<Session>> session = Session::create(crying({"flow.0.mapSize=64", "flow.0.redness=0"}), *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    const auto flush = [&] {
+        float most = 0;
+        for (const Node& node : (*session)->solids().nodes()) most = std::max(most, node.material.flush);
+        return most;
+    };
+    EXPECT_EQ(flush(), 0.0F);
+    SceneFile scene = (*session)->scene();
+    scene.flow[0].redness = 0.8F;
+    (*session)->apply(scene);
+    EXPECT_GE(flush(), 0.4F) << "half of it is there at once";
+    EXPECT_LE(flush(), 0.8F);
+}
+
 TEST(SceneFlow, ASliderThatIsNoParameterIsRefused) {
     const Result<SceneFile> scene = loadScene("crying", std::vector<std::string>{"sliders=flow[0].amout"});
     ASSERT_FALSE(scene);

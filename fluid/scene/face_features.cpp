@@ -55,7 +55,7 @@ std::optional<Opening> openingAt(const ViewFrame& frame, const std::vector<vec3>
             }
     if (seed.x < 0) return std::nullopt;
     std::vector<uint8_t> taken(static_cast<size_t>(w) * static_cast<size_t>(h), 0);
-    const auto index = [w](int x, int y) { return static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x); };
+    const auto index = [](int x, int y) { return static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x); };
     std::vector<ivec2> open{seed};
     taken[index(seed.x, seed.y)] = 1;
     std::vector<ivec2> span(static_cast<size_t>(w), ivec2(h, -1));  // of each column: the lowest and highest open texel

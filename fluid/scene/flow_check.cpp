@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/scene/import_model.h"
+#include "engine/scene/transform.h"
 #include "fluid/flow/flow_maps.h"
 
 namespace rivulet {

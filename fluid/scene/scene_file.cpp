@@ -37,6 +37,7 @@ std::string wrongSlider(const SceneFile& scene) {
     SceneFile copy = scene;
     const std::map<std::string, std::string> known = paramTexts(visiting(copy));
     std::vector<std::string> names;
+    names.reserve(known.size());
     for (const auto& [name, text] : known) names.push_back(name);
     for (const std::string& path : slidersOf(scene.sliders))
         if (!known.contains(path)) {

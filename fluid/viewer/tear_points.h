@@ -2,8 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "engine/app/input_events.h"
+#include "engine/scene/camera.h"
 #include "fluid/session/session.h"
 
 namespace rivulet {

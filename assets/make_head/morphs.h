@@ -17,7 +17,7 @@ std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array
 // `wet`: where the vertices are when the lid is full, see clumped().
 std::vector<std::vector<dvec3>> lashMorphs(const Part& lashes, const std::vector<Lash>& ofVertex, const Surface& head, const Eye& eye,
                                            const std::vector<std::vector<dvec3>>& skin, const std::vector<dvec3>& wet);
-// Of a part whose vertices go with vertices of the skin.
+// The morphs of a part whose vertices move as the given vertices of the skin do.
 std::vector<std::vector<dvec3>> carriedMorphs(const std::vector<uint32_t>& roots, const std::vector<std::vector<dvec3>>& skin);
 // Of a part that goes with the jaw, each vertex by its share.
 std::vector<std::vector<dvec3>> jawMorphs(const Part& part, const std::vector<double>& jaw);

@@ -1,4 +1,4 @@
-// The parameters that a scene names in `sliders`, above all others: what a person who sees it for the first time plays with.
+// Widgets for the parameters that a scene lists in `sliders`, shown above all other parameters.
 #pragma once
 
 #include "fluid/scene/scene_file.h"

@@ -12,6 +12,7 @@ struct Liquid {
     float path;      // m, through the liquid to that point
     float light;     // light at that point relative to a dry one: focused or shaded
     float variance;  // of slopes within a pixel
+    float film;      // m, thickness of a film as it is drawn
 };
 
 vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * vec4(layerAbsorption.www, 1.0); }
@@ -20,9 +21,11 @@ vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * ve
 // of less than two pixels fade out.
 vec4 roughnessAt(Tangents t, vec2 uv, float size) {
     float level = -log2(size * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), scale = exp2(floor(level)), share = fract(level);
-    vec4 a = noise(vec3(uv * scale, 0.5)), b = noise(vec3(uv * 2.0 * scale, 7.5));
+    const mat2 kTurn = mat2(0.79, 0.61, -0.61, 0.79);  // the lattice of the noise is not along the uv, as many trails are
+    vec2 at = kTurn * uv;
+    vec4 a = noise(vec3(at * scale, 0.5)), b = noise(vec3(at * 2.0 * scale, 7.5));
     float seen = 1.0 - smoothstep(0.25, 0.5, t.footprint / size);
-    return seen * vec4(mix(a.x, b.x, share), gradient(t, mix(a.yz, 2.0 * b.yz, share) * scale));
+    return seen * vec4(mix(a.x, b.x, share), gradient(t, mix(a.yz, 2.0 * b.yz, share) * kTurn * scale));
 }
 
 // A film is not flat: it is a cushion, higher in its middle than at its edge, which a map with heights of 10 um and texels of 0.3 mm does not
@@ -38,26 +41,28 @@ vec3 cushion(Tangents t, vec2 uv, float lod, float size, out float around) {
 }
 
 // The slope of a film's surface. A trail is as wide as the wetness says, but its edge is held by pores and fine hairs, and where it is thin,
-// tension draws it into beads (Plateau and Rayleigh). `wet`: 0..1; what the map says becomes what is left of it.
-vec3 filmAt(Tangents t, vec2 uv, float lod, inout float wet) {
-    const float kReach = 3.0e-3, kSoft = 0.6e-3;  // m, how far an edge may move; m, width of an edge that is not moved
-    const float kHigh = 2.5e-4;                   // m, of a cushion
-    float narrow, around;
-    vec3 plain = kHigh * cushion(t, uv, lod, kSoft, narrow), slope = cushion(t, uv, lod, kReach, around);
-    float trail = smoothstep(0.2, 0.42, around);  // 0: specks, smaller than the reach
-    vec4 bead = roughnessAt(t, uv, 4.5e-3), hold = 0.45 * bead + 0.4 * roughnessAt(t, uv, 2.0e-3) + 0.2 * roughnessAt(t, uv, 0.7e-3);
+// tension draws it into beads (Plateau and Rayleigh). `wet`: 0..1; what the map says becomes what is left of it. `high`: m, of its surface.
+vec3 filmAt(Tangents t, vec2 uv, float lod, inout float wet, out float high) {
+    const float kReach = 1.5e-3;  // m, how far an edge may move
+    const float kHigh = 3.2e-4;   // m, of a cushion
+    float around;
+    vec3 slope = cushion(t, uv, lod, kReach, around);
+    vec4 bead = roughnessAt(t, uv, 5.0e-3), mid = roughnessAt(t, uv, 2.2e-3), pore = roughnessAt(t, uv, 0.7e-3);
     // As it dries, it breaks up. Where all around is wet, nothing pulls at it.
-    float loose = mix(1.4, 0.8, smoothstep(0.3, 0.9, wet)) * (1.0 - 0.5 * smoothstep(0.85, 1.0, around));
-    const float kFrom = 0.46, kTo = 0.66;
-    float x = clamp((around * (1.0 + loose * hold.x) - kFrom) / (kTo - kFrom), 0.0, 1.0), steep = 6.0 * x * (1.0 - x) / (kTo - kFrom);
-    slope = slope * (1.0 + loose * hold.x) + around * loose * hold.yzw;
-    float held = min(wet * 2.0, 1.0) * x * x * (3.0 - 2.0 * x);
-    wet = mix(wet, held, trail);
-    return mix(plain, kHigh * (slope * steep * (0.8 + 0.5 * bead.x) + held * 0.5 * bead.yzw), trail);
+    float loose = mix(1.5, 0.75, smoothstep(0.3, 0.8, wet)) * (1.0 - 0.5 * smoothstep(0.85, 1.0, around));
+    vec4 hold = loose * (0.5 * bead + 0.25 * mid + 0.12 * pore);
+    const float kFrom = 0.36, kTo = 0.72;
+    float x = clamp((around * (1.0 + hold.x) - kFrom) / (kTo - kFrom), 0.0, 1.0);
+    float steep = 2.0 * (1.0 - x) / (kTo - kFrom) * (x > 0.0 ? 1.0 : 0.0);
+    slope = slope * (1.0 + hold.x) + around * hold.yzw;
+    float part = x * (2.0 - x), fat = 0.85 + 0.5 * bead.x;
+    wet = smoothstep(0.0, 0.25, x) * min(wet * 3.0, 1.0);
+    high = kHigh * part * fat;
+    return kHigh * (slope * steep * fat + part * 0.5 * bead.yzw);
 }
 
 Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
-    Liquid dry = Liquid(0.0, 0.0, uv, vec3(0.0), 0.0, 1.0, 0.0);
+    Liquid dry = Liquid(0.0, 0.0, uv, vec3(0.0), 0.0, 1.0, 0.0, 0.0);
     float lod = max(t.lod + log2(float(textureSize(layerMap, 0).x)), 0.0);
     vec4 around = liquidTexel(uv, max(lod, 3.5));
     if (around.z < 1.0e-5 && around.w < 1.0e-3) return dry;
@@ -111,8 +116,10 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     q.light *= 1.0 - 0.6 * (1.0 - q.drop) * smoothstep(0.0, 2.0e-4, over);
     if (q.drop < 1.0 && lod < 4.0) {
         float film = q.wet;
-        vec3 slope = filmAt(t, uv, lod, film);
+        vec3 slope = filmAt(t, uv, lod, film, q.film);
         q.slope += (1.0 - q.drop) * slope;
+        // A facet that faces the lamp gets more of its light. The film is too thin to move that light aside.
+        q.light *= clamp(1.0 - (1.0 - q.drop) * dot(slope, across) / max(sun, 0.35), 0.3, 1.8);
         q.wet = mix(film, q.wet, q.drop);
     }
     q.variance = 0.10 * q.drop * smoothstep(3.0e-4, 1.5e-3, t.footprint);

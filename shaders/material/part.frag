@@ -98,7 +98,7 @@ void main() {
     vec3 fine = reliefSlope(poresMap, uv, t, poreTiling, mapLod.w, variance, height) * (skinAmount.y * fade * (1.0 + 0.5 * region.r));
     variance *= skinAmount.y;
 #if defined(LAYER)
-    float filled = 1.0 / (1.0 + q.path / 3.0e-5);  // a film fills the pores
+    float filled = 1.0 / (1.0 + (q.path + q.film) / 3.0e-5);  // a film fills the pores
 #endif
     albedo.rgb *= clamp(1.0 + 3.2 * height * fade, 0.65, 1.12);  // less light comes out of a furrow
     facing = normalize(n - slope - fine);

@@ -147,7 +147,7 @@ void SurfaceFlow::setGrip(std::span<const float> grip) {
     Impl& w = *impl_;
     ASSERT(grip.size() == w.mesh.rest.size(), "one number a place of mesh()");
     std::vector<vec4> table = w.device->readAll<vec4>(w.driven, 2 * grip.size());
-    for (size_t p = 0; p < grip.size(); ++p) table[2 * p].w = grip[p];
+    for (size_t p = 0; p < grip.size(); ++p) table[2 * p].w = grip[p] * w.uneven[p];
     w.device->writeAll<vec4>(w.driven, table);
 }
 
@@ -325,7 +325,7 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);
     device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
     device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
-    device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion, &lean}, f.count);
+    device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &driven, &motion, &lean}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);
     device->run(paint, f, {&drops.id, &skin, &frames, &motion, &film, &drop, &painted}, f.count);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);

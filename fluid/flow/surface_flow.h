@@ -23,6 +23,7 @@ struct SurfaceFlowParams {
     float advancing = 60.0F;         // deg, contact angle at the front of a drop
     float receding = 40.0F;          // deg, at the back
     float hold = 1.0F;               // k of the force that holds a drop: k w gamma (cos receding - cos advancing)
+    float unevenness = 0.0F;         // of that force, over the skin: standard deviation over the mean, in spots of 3 and 9 mm
     float drag = 60.0F;              // beta of its viscous drag: beta w eta |v|
     float wallFriction = 0.0F;       // Pa s/m, of the liquid on the skin: with it beta follows from the contact angles, see dragOf()
     float adhesion = 1.0F;           // share of w gamma sin(advancing) pi that holds a drop under a skin

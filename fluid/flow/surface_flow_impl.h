@@ -62,6 +62,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     Buffer chain, spill;                                                                              // of brims
     Buffer film;                                                                                      // picolitres, of each cell
     Buffer birth, counter, left;
+    std::vector<float> uneven;        // of each place: factor of the holding force
     std::vector<uint32_t> firstCell;  // of each triangle's lattice, and the end
     // Counters that the device reports: shared with reads that are still pending.
     struct Reports {

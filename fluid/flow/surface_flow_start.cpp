@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <random>
 
 #include "engine/core/param_check.h"
 #include "fluid/flow/footprint.h"
@@ -21,6 +22,10 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
              kLinear, kFixed},
             receding);
     v.value({"hold", "", "factor on the force that holds a drop; 1 = that of a disc with these angles", 0, 10}, hold);
+    v.value({"unevenness", "",
+             "how much that force varies over the skin, in spots of 3 and 9 mm: standard deviation over the mean; drops wander and pause",
+             0, 0.5, kLinear, kFixed},
+            unevenness);
     v.value({"drag", "", "force that slows a drop, over its width times viscosity times speed", 0, 10000}, drag);
     v.value({"wallFriction", "Pa s/m",
              "friction of the liquid on the skin; with it drag is ignored and follows from the contact angles; 0 = drag", 0, 1.0e9},
@@ -48,6 +53,27 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({"brimWidth", "m", "radius of the liquid in a brim", 1.0e-4, 0.01, kLog}, brimWidth);
     v.value({"tear", "ul", "volume of a drop that overflows a brim", 0.1, 30, kLog}, tear);
     v.value({"capacity", "", "limit on the number of drops", 1, 1 << 20, kLog, kFixed}, capacity);
+}
+
+// A factor of the holding force at each place: contact lines are pinned by spots of the surface (Joanny and de Gennes 1984). Two random
+// fields, each a sum of plane waves, whose directions are spread evenly over the sphere.
+static std::vector<float> unevenGrip(std::span<const vec3> rest, float deviation) {
+    constexpr int kWaves = 12;
+    constexpr float kLengths[] = {0.006F, 0.018F};  // m, of the waves: a spot is half as wide
+    std::vector<float> grip(rest.size(), 1.0F);
+    if (!(deviation > 0)) return grip;
+    std::minstd_rand random(1);
+    const auto uniform = [&] { return static_cast<float>(random()) / static_cast<float>(std::minstd_rand::max()); };
+    for (const float length : kLengths)
+        for (int k = 0; k < kWaves; ++k) {
+            const float high = 1 - (2.0F * static_cast<float>(k) + 1) / float{kWaves}, flat = std::sqrt(1 - high * high);
+            const float round = 2.3999632F * static_cast<float>(k), phase = 6.2831853F * uniform();  // the golden angle
+            const vec3 wave = 6.2831853F / length * vec3(flat * std::cos(round), flat * std::sin(round), high);
+            const float share = deviation / std::sqrt(float{kWaves});
+            for (size_t p = 0; p < rest.size(); ++p) grip[p] += share * std::sin(glm::dot(wave, rest[p]) + phase);
+        }
+    for (float& g : grip) g = std::max(g, 0.1F);
+    return grip;
 }
 
 Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
@@ -154,8 +180,9 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     for (size_t p = 0; p < places; ++p) at.emplace_back(mesh.rest[p], static_cast<float>(under.triangle[under.begin[p]]));
     on.writeAll<vec4>(point, at);
     on.writeAll<uint32_t>(given, mesh.given);
+    uneven = unevenGrip(mesh.rest, params.unevenness);
     std::vector<vec4> usual(2 * places, vec4(0.0F));
-    for (size_t p = 0; p < places; ++p) usual[2 * p] = vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    for (size_t p = 0; p < places; ++p) usual[2 * p] = vec4(0.0F, 0.0F, 0.0F, uneven[p]);
     on.writeAll<vec4>(driven, usual);
     on.writeAll<uint32_t>(begin, under.begin);
     on.writeAll<uint32_t>(footprint, under.triangle);

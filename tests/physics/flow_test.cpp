@@ -238,6 +238,48 @@ TEST(Flow, IsHeldUntilItIsTooHeavy) {
         }
 }
 
+// On an uneven skin the force that holds a drop is normally distributed from place to place. A drop of 0.9 of the volume that begins to
+// slide is held by less than 0.9^(2/3) of the mean force in a known share of places, as the weight goes with the volume and the force with
+// its cube root. A drop that runs wanders, as its front is held more on one side than on the other; on an even skin its path is straight.
+TEST(Flow, AnUnevenSkinHoldsHereAndLetsGoThere) {
+    auto device = cpu();
+    constexpr float kWide = 0.2F;
+    const Shape shape = sheetShape(vec3(0.0F, kWide, 0.0F), vec3(0.0F, -kWide, 0.0F), vec3(kWide, 0.0F, 0.0F), 240, 240);
+    for (const double deviation : {0.0, 0.1, 0.25}) {
+        SurfaceFlowParams p;
+        p.unevenness = static_cast<float>(deviation);
+        p.trail = 0;
+        SurfaceFlow flow = flowOn(*device, shape, p);
+        constexpr int kSide = 18;
+        std::vector<vec3> at;
+        for (int k = 0; k < kSide * kSide; ++k) {
+            at.emplace_back(0.01F * static_cast<float>(1 + k % kSide), 0.01F * static_cast<float>(1 + k / kSide), 0.0F);
+            flow.add(nearestPoint(flow.mesh(), at.back()), static_cast<uint32_t>(0.9 * 4.07e6));
+        }
+        for (int step = 0; step < 6; ++step) EXPECT_TRUE(flow.step({}, 1.0 / 60));
+        double slid = 0;
+        for (const SkinDrop& d : flow.drops())
+            slid += std::none_of(at.begin(), at.end(), [&](const vec3& x) { return glm::distance(x, d.position) < 1e-5F; }) ? 1 : 0;
+        const double below = deviation > 0 ? 0.5 * std::erfc((1 - std::pow(0.9, 2.0 / 3)) / (deviation * std::sqrt(2.0))) : 0;
+        EXPECT_NEAR(slid / (kSide * kSide), below, 0.07) << deviation;
+    }
+    for (const float deviation : {0.0F, 0.35F}) {
+        SurfaceFlowParams p;
+        p.unevenness = deviation;
+        SurfaceFlow flow = flowOn(*device, shape, p);
+        flow.add(nearestPoint(flow.mesh(), vec3(0.1F, 0.195F, 0.0F)), 10 * kMicrolitres);
+        double aside = 0;
+        for (int k = 0; k < 120; ++k) {
+            EXPECT_TRUE(flow.step({}, 1.0 / 60));
+            for (const SkinDrop& d : flow.drops()) aside = std::max(aside, std::abs(double{d.position.x} - 0.1));
+        }
+        EXPECT_LT(flow.drops().front().position.y, 0.15F) << deviation;
+        if (deviation == 0) EXPECT_LT(aside, 1e-4);
+        if (deviation > 0) EXPECT_GT(aside, 5e-4);
+        EXPECT_LT(aside, 0.02) << deviation;
+    }
+}
+
 // A trail has no gaps: along its middle the film has the set thickness, on right-angled, oblique and long triangles, at any speed.
 TEST(Flow, ATrailHasNoGaps) {
     auto device = cpu();

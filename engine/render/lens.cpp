@@ -16,19 +16,19 @@ constexpr float kSensor = 0.024F;   // m, its height: of a full frame
 constexpr float kMostBlur = 0.03F;  // of the picture's height, diameter: 48 samples show no gaps up to there
 constexpr int kSmallest = 8;        // texels, of the pyramid's last level
 
-// blurDiameter is .x - .y / depth.
-vec2 blurOf(const Lens& lens, const FrameView& view) {
-    const float focal = 0.5F * kSensor * view.projection[1][1], focus = std::max(lens.focus, 2.0F * focal);
-    const float most = focal * focal / (lens.aperture * (focus - focal) * kSensor);
-    return {most, most * focus};
+// m: the focal length; its square over the aperture's and the sensor's; the focus.
+vec3 lensOf(const Lens& lens, const FrameView& view) {
+    const float focal = 0.5F * kSensor * view.projection[1][1];
+    return {focal, focal * focal / (lens.aperture * kSensor), std::max(lens.focus, 2.0F * focal)};
 }
 
 }  // namespace
 
 float blurDiameter(const Lens& lens, const FrameView& view, float depth) {
     if (lens.aperture <= 0) return 0.0F;
-    const vec2 blur = blurOf(lens, view);
-    return std::clamp(blur.x - blur.y / depth, -kMostBlur, kMostBlur);
+    const vec3 made = lensOf(lens, view);
+    const float most = made.y / (made.z - made.x);
+    return std::clamp(most - most * made.z / depth, -kMostBlur, kMostBlur);
 }
 
 Result<LensPrograms> LensPrograms::create(const ShaderFiles& files) {
@@ -37,7 +37,7 @@ Result<LensPrograms> LensPrograms::create(const ShaderFiles& files) {
     std::pair<Program*, Result<Program>> made[] = {
         {&p.bloomDown, Program::create(files, {full, folder + "bloom.frag"}, {{"DOWN", "1"}})},
         {&p.bloomUp, Program::create(files, {full, folder + "bloom.frag"})},
-        {&p.blur, Program::create(files, {full, folder + "depth_of_field.frag"})},
+        {&p.blur, Program::create(files, {folder + "depth_of_field.vert", folder + "depth_of_field.frag"})},
     };
     for (auto& [into, program] : made) {
         if (!program) return program.error();
@@ -61,7 +61,10 @@ TextureHandle addDepthOfField(gpu::FrameGraph& graph, LensPrograms& programs, gp
         p.texture("sceneDepth", 1, c.texture(depth));
         p.set("water", fluidDepth ? 1 : 0);
         if (fluidDepth) p.texture("fluidDepth", 2, c.texture(fluidDepth));
-        p.set("blur", 0.5F * static_cast<float>(view.height) * vec3(blurOf(lens, view), kMostBlur));  // radii
+        const vec3 made = lensOf(lens, view);
+        const float radius = 0.5F * static_cast<float>(view.height);
+        p.set("automatic", lens.automatic ? 1 : 0);
+        p.set("lens", vec4(made.x, radius * made.y, made.z, radius * kMostBlur));
         c.drawFullscreen();
     });
     return blurred;

@@ -11,10 +11,11 @@
 namespace rivulet {
 
 struct Lens {
-    float exposure = 0.0F;  // stops more light than by default
-    float bloom = 0.0F;     // 0..1: share of the light that the lens scatters around bright things
-    float aperture = 0.0F;  // f-number of a lens before a sensor 24 mm high; 0: everything is sharp
-    float focus = 1.0F;     // m, > 0: distance along the view axis that is sharp
+    float exposure = 0.0F;   // stops more light than by default
+    float bloom = 0.0F;      // 0..1: share of the light that the lens scatters around bright things
+    float aperture = 0.0F;   // f-number of a lens before a sensor 24 mm high; 0: everything is sharp
+    float focus = 1.0F;      // m, > 0: distance along the view axis that is sharp
+    bool automatic = false;  // instead that of what is in the middle of the picture; `focus` where only background is
 };
 
 struct LensPrograms {

@@ -120,7 +120,7 @@ void CameraParams::visit(ParamVisitor& v) {
     v.value({"aperture", "f-number",
              "depth of field of a lens before a sensor 24 mm high: the smaller, the less is sharp; 0 = everything is sharp", 0, 64},
             aperture);
-    v.value({"focus", "m", "distance along the view axis that is sharp; 0 = that of the target", 0, 1000}, focus);
+    v.value({"focus", "m", "distance along the view axis that is sharp; 0 = that of what is in the middle of the picture", 0, 1000}, focus);
 }
 
 void LightParams::visit(ParamVisitor& v) {

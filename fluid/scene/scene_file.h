@@ -26,7 +26,7 @@ struct CameraParams {
     float exposure = 0.0F;            // stops
     float bloom = 0.0F;               // 0..1
     float aperture = 0.0F;            // f-number; 0 = everything is sharp
-    float focus = 0.0F;               // m; 0 = the target's distance
+    float focus = 0.0F;               // m; 0 = that of what is in the middle of the picture
     void visit(ParamVisitor& v);
 };
 

@@ -336,7 +336,8 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const Lens lens{.exposure = camera.exposure,
                     .bloom = camera.bloom,
                     .aperture = camera.aperture,
-                    .focus = camera.focus > 0 ? camera.focus : atTarget};
+                    .focus = camera.focus > 0 ? camera.focus : atTarget,
+                    .automatic = camera.focus <= 0};
     layers.colour = addDepthOfField(graph, lens_, frame, view, lens, layers.colour, draw.depth, layers.fluidDepth);
     layers.colour = addBloom(graph, lens_, lens, layers.colour);
     const gpu::TextureHandle picture = graph.importTexture("picture", picture_);

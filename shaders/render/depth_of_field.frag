@@ -5,7 +5,7 @@ uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;  // window depth
 uniform sampler2D fluidDepth;  // m
 uniform bool water;
-uniform vec3 blur;  // pixels: the radius of a disc is |x - y / depth|, at most z
+flat in vec3 blur;  // pixels: the radius of a disc is |x - y / depth|, at most z
 layout(location = 0) out vec4 colour;
 const int kSamples = 32;
 

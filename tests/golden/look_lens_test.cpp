@@ -90,6 +90,18 @@ TEST_F(LookLens, aPointOutOfFocusBecomesADisc) {
     }
 }
 
+// What is in the middle is sharp at any depth; with nothing there the given focus holds.
+TEST_F(LookLens, anAutomaticFocusIsOnTheMiddle) {
+    const auto middle = [&](const Lens& lens, float depth) { return point(lens, 1000.0F, depth)[size_t{kSide / 2} * kSide + kSide / 2].r; };
+    for (const float depth : {0.5F, 1.6F, 4.0F}) {
+        EXPECT_GT(middle({.aperture = 2.0F, .focus = 1.0F, .automatic = true}, depth), 900.0F) << depth;
+        EXPECT_LT(middle({.aperture = 2.0F, .focus = 1.0F}, depth), 500.0F) << depth;
+    }
+    const float background = 1.0e6F;  // beyond the far plane: window depth 1
+    EXPECT_EQ(middle({.aperture = 2.0F, .focus = 1.0F, .automatic = true}, background),
+              middle({.aperture = 2.0F, .focus = 1.0F}, background));
+}
+
 TEST_F(LookLens, glareSpreadsLightAndMakesNone) {
     const std::vector<vec4> seen = point({.bloom = 0.2F}, 1000.0F, 1.0F);
     double sum = 0;

@@ -73,19 +73,19 @@ dvec3 mouth(dvec3 p, double side, const std::string& name) {
     if (name == "mouthStretch") {  // wide, the lips drawn thin
         dvec3 corner = dvec3(0.46 * side, -0.20, -0.30) * bell(p, {2.5 * side, -4.35, 4.3}, {1.15, 0.9, 2.2});
         dvec3 thin = dvec3(0, -0.10 * (p.y + 4.25), -0.06) * bell(p, {1.2 * side, -4.25, 5.0}, {1.6, 0.7, 2.0});
-        dvec3 fold = dvec3(0, 0, -0.10) * groove(p, {3.05 * side, -3.7, 4.2}, {3.25 * side, -5.6, 3.9}, 0.28);
+        dvec3 fold = dvec3(0, 0, -0.10) * groove(p, {3.05 * side, -3.7, 4.2}, {3.25 * side, -5.6, 3.9}, 0.36);
         return (corner + fold) * front + thin * front * 0.5;
     }
     if (name == "upperLipRaise") {  // with the wings of the nose, and the fold from them to the corners
         dvec3 lip = dvec3(0.04 * side, 0.34, 0.06) * bell(p, {1.35 * side, -3.3, 5.4}, {0.85, 0.75, 1.6});
         dvec3 wing = dvec3(0.07 * side, 0.20, 0.0) * bell(p, {1.4 * side, -1.1, 5.7}, {0.5, 0.6, 1.0});
-        dvec3 fold = dvec3(0, 0, -0.13) * groove(p, {1.95 * side, -1.6, 5.1}, {3.0 * side, -3.9, 4.4}, 0.22) +
+        dvec3 fold = dvec3(0, 0, -0.13) * groove(p, {1.95 * side, -1.6, 5.1}, {3.0 * side, -3.9, 4.4}, 0.33) +
                      dvec3(0.06 * side, 0.20, 0.16) * groove(p, {2.55 * side, -0.9, 4.9}, {3.6 * side, -3.2, 4.2}, 0.55);
         return (lip + wing + fold) * front;
     }
     if (name == "mouthPress") {  // lips together and drawn in
         double near = bell(p, {0.9 * side, -4.3, 5.2}, {1.5, 0.55, 1.5});
-        dvec3 in = dvec3(0.03 * side, 0.22 * glm::clamp(-4.22 - p.y, -0.5, 0.5), -0.09) * near;
+        dvec3 in = dvec3(0.03 * side, 0.34 * glm::clamp(-4.22 - p.y, -0.5, 0.5), -0.09) * near;
         return (in + dvec3(0, 0.10, 0.05) * bell(p, {0.6 * side, -6.3, 5.2}, {1.1, 0.7, 2.0})) * front;
     }
     // Pucker: towards the middle and forward.
@@ -101,8 +101,8 @@ dvec3 chinRaised(dvec3 p, double jaw) {
     dvec3 lip =
         dvec3(0, 0.16 + 0.12 * smoothstep(-4.4, -5.2, p.y), 0.26) * bell(p, {0, -5.0, 5.5}, {1.7, 0.62, 1.6}) * smoothstep(0.3, 0.8, jaw);
     dvec3 upper = dvec3(0, 0.10, 0.03) * bell(p, {0, -4.0, 5.6}, {1.5, 0.45, 1.6}) * smoothstep(0.6, 0.2, jaw);
-    double dimple = smoothstep(0.55, 0.05, cells(dvec3(p.x, p.y, 0) * 1.9, 431, which)) * (0.4 + 0.6 * which);
-    dvec3 dimples = dvec3(0, 0, -0.22) * (dimple * bell(p, {0, -6.7, 5.2}, {1.0, 0.6, 2.0}));
+    double dimple = smoothstep(0.75, 0.0, cells(dvec3(p.x, p.y, 0) * 1.45, 431, which)) * (0.4 + 0.6 * which);
+    dvec3 dimples = dvec3(0, 0, -0.17) * (dimple * bell(p, {0, -6.7, 5.2}, {1.0, 0.6, 2.0}));
     dvec3 fold = dvec3(0, 0, -0.17) * bell(p, {0, -5.75, 5.2}, {1.3, 0.22, 2.0});  // between lip and chin
     return (boss + lip + upper + dimples + fold) * front;
 }

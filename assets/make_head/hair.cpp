@@ -47,7 +47,7 @@ std::vector<Root> scalpRoots(const Surface& head, const std::vector<dvec3>& norm
         // Behind the ears a sparser crop covers as well: its hairs lie flat.
         const double crop = cropAt(middle, ear) * glm::mix(0.7, 1.0, smoothstep(-9.0, -6.0, middle.z)),
                      area = 0.5 * glm::length(glm::cross(b->at - a->at, c->at - a->at));
-        for (due += area * perArea * crop * (1.8 - 0.8 * crop); due >= 1; due -= 1) {
+        for (due += area * perArea * crop * smoothstep(0.02, 0.22, crop) * (2.0 - crop); due >= 1; due -= 1) {
             const auto n = static_cast<int64_t>(roots.size());
             double u = hash(n, 0, 0, 201), v = hash(n, 1, 0, 201);
             if (u + v > 1) u = 1 - u, v = 1 - v;
@@ -89,7 +89,7 @@ Part makeHair(const Surface& head) {
         way = glm::normalize(way) + 0.55 * dvec3(noise(p * 0.55, 211), noise(p * 0.55, 212), noise(p * 0.55, 213)) +
               glm::mix(1.3, 0.55, root.crop) * dvec3(hash(n, 0, 0, 214) - 0.5, hash(n, 1, 0, 214) - 0.5, hash(n, 2, 0, 214) - 0.5);
         way = glm::normalize(way - root.normal * glm::dot(way, root.normal));
-        const double top = smoothstep(6.0, 10.5, p.y), edge = smoothstep(0.15, 0.9, root.crop);
+        const double top = smoothstep(6.0, 10.5, p.y), edge = smoothstep(0.12, 0.85, root.crop);
         const double length = glm::mix(0.75, 2.3, top) * glm::mix(0.45, 1.0, edge) * (0.5 + 0.9 * hash(n, 3, 0, 214));
         const double rise = glm::mix(0.35, 0.75, top) * glm::mix(0.5, 1.0, edge) * (0.8 + 0.4 * hash(n, 4, 0, 214));
         std::vector<dvec3> line;
@@ -100,7 +100,7 @@ Part makeHair(const Surface& head) {
             line.push_back(p - root.normal * 0.03 + length * (way * (u * (0.55 + 0.45 * u)) + root.normal * (rise * (u - 0.62 * u * u))) +
                            dvec3(0, -0.10 * length * u * u, 0));
         }
-        addRibbon(part, line, root.normal, glm::mix(0.11, 0.19, top) * glm::mix(0.22, 1.0, edge), number);
+        addRibbon(part, line, root.normal, glm::mix(0.11, 0.19, top) * glm::mix(0.16, 1.0, edge), number);
     }
     return part;
 }

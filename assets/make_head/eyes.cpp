@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "assets/make_head/cage.h"
+#include "assets/make_head/noise.h"
 
 namespace rivulet::head {
 namespace {
@@ -139,12 +140,50 @@ void addMargins(Surface& head, Eye& eye) {
 
 }  // namespace
 
-double eyeSurface(double out, double up) {
-    double forward = std::cos(out + kInward) * std::cos(up);  // cosine of the angle to the direction of sight
+CornerFlesh cornerFlesh(double t, double v) {
+    double which = 0;
+    const dvec3 p(t / 0.021, v * 3.0, 0.5);
+    const double lump = smoothstep(0.75, 0.1, cells(p, 401, which));
+    const dvec2 off((t - 0.072) / 0.052, (v - 0.5) / 0.50);
+    CornerFlesh flesh;
+    flesh.caruncle = smoothstep(1.25, 0.55, glm::length(off));
+    flesh.along = t - 0.035 * (2 * v - 1) * (2 * v - 1);
+    const double crest = 0.112, from = (flesh.along - crest) / (flesh.along < crest ? 0.010 : 0.018);
+    flesh.plica = std::exp(-from * from) * smoothstep(-0.2, 0.15, v) * smoothstep(1.2, 0.85, v);
+    flesh.lump = flesh.caruncle * lump * (0.5 + 0.5 * which);
+    flesh.height = 0.045 * flesh.caruncle + 0.022 * flesh.lump + 0.030 * flesh.plica;
+    return flesh;
+}
+
+dvec2 fleshUv(double along, double across) { return dvec2(0.006) + 0.125 * dvec2(along, across); }
+
+dvec3 turned(dvec3 p, dvec2 gaze) {
+    const double y = p.y * std::cos(gaze.y) + p.z * std::sin(gaze.y), z = p.z * std::cos(gaze.y) - p.y * std::sin(gaze.y);
+    return {p.x * std::cos(gaze.x) + z * std::sin(gaze.x), y, z * std::cos(gaze.x) - p.x * std::sin(gaze.x)};
+}
+
+namespace {
+
+// `forward`: cosine of the angle to the direction of sight.
+double surfaceBy(double forward) {
     double under = kCorneaRadius * kCorneaRadius - kCorneaCentre * kCorneaCentre * (1 - forward * forward);
     double cornea = forward > 0 ? kCorneaCentre * forward + std::sqrt(std::max(under, 0.0)) : 0;
     double d = cornea - kEyeRadius;
     return kEyeRadius + 0.5 * (d + std::sqrt(d * d + 1e-4));
+}
+
+}  // namespace
+
+double eyeSurface(double out, double up) { return surfaceBy(std::cos(out + kInward) * std::cos(up)); }
+
+dvec3 Eye::raisedOver(dvec3 p, dvec2 gaze) const {
+    EyePoint e = seen(p);
+    if (p.z < centre.z || e.height > 1) return p;
+    const dvec3 towards = (p - centre) / glm::length(p - centre), sight = turned({-side * std::sin(kInward), 0, std::cos(kInward)}, gaze);
+    const double rise = surfaceBy(glm::dot(towards, sight)) - eyeSurface(e.out, e.up);
+    // Where the cornea leaves, a lid sinks less than it: it is thick.
+    e.height += (rise > 0 ? rise : 0.5 * rise) * (1 - smoothstep(0.25, 0.9, e.height));
+    return placed(e);
 }
 
 EyePoint Eye::seen(dvec3 p) const {
@@ -193,7 +232,7 @@ dvec3 Eye::lidsMoved(dvec3 p, bool upperLid, bool onMargin, double upperShare, d
     double sheet = glm::mix(edgeHeight + 0.02, farHeight, smoothstep(0.1, 1.0, along));
     e.up = moved;
     double open = smoothstep(0.0, 0.25, margin(true, e.out) - margin(false, e.out));
-    e.height = glm::mix(e.height, std::min(e.height, sheet), share * keep * open);
+    e.height = glm::mix(e.height, std::min(e.height, sheet), std::max(share, 0.0) * keep * open);
     return placed(e);
 }
 
@@ -240,7 +279,7 @@ struct Latitude {
     double angle, distance, chart;
 };
 Part revolved(const Eye& eye, const std::vector<Latitude>& profile, std::string name, std::string material) {
-    constexpr int kAround = 64;
+    constexpr int kAround = 48;
     const double inward = kInward * eye.side;
     Part part;
     part.name = std::move(name);
@@ -271,13 +310,14 @@ Part makeEyeball(const Eye& eye) {
     const double limbus = std::asin(kLimbusRadius / kEyeRadius), plane = kEyeRadius * std::cos(limbus);
     std::vector<Latitude> profile = {{0, plane - 0.032, 0}};
     auto chart = [](double angle) { return 0.5 * std::sqrt(angle / kPi); };
-    for (int j = 1; j <= 12; ++j) {  // the iris: a shallow bowl behind the cornea
-        double r = kLimbusRadius * j / 12 * 0.995, depth = 0.032 * (1 - std::pow(j / 12.0, 4.0));
+    constexpr int kIrisRows = 6, kWhiteRows = 20;
+    for (int j = 1; j <= kIrisRows; ++j) {  // the iris: a shallow bowl behind the cornea
+        double share = static_cast<double>(j) / kIrisRows, r = kLimbusRadius * share * 0.995, depth = 0.032 * (1 - std::pow(share, 4.0));
         double z = plane - depth;
-        profile.push_back({std::atan2(r, z), std::hypot(r, z), chart(limbus * j / 12 * 0.995)});
+        profile.push_back({std::atan2(r, z), std::hypot(r, z), chart(limbus * share * 0.995)});
     }
-    for (int j = 0; j <= 30; ++j) {
-        double angle = glm::mix(limbus, kPi - 0.02, std::pow(j / 30.0, 1.3));
+    for (int j = 0; j <= kWhiteRows; ++j) {
+        double angle = glm::mix(limbus, kPi - 0.02, std::pow(static_cast<double>(j) / kWhiteRows, 1.3));
         profile.push_back({angle, kEyeRadius - (j == 0 ? 0.001 : 0), chart(angle)});
     }
     return revolved(eye, profile, eye.side > 0 ? "eyeLeft" : "eyeRight", "eye");
@@ -286,10 +326,11 @@ Part makeEyeball(const Eye& eye) {
 Part makeCornea(const Eye& eye) {
     const double edge = std::asin(kLimbusRadius / kEyeRadius) * 1.16;
     std::vector<Latitude> profile;
-    for (int j = 0; j <= 20; ++j) {
-        double angle = edge * j / 20;
-        double r = eyeSurface(angle - kInward, 0) - 0.004 * smoothstep(0.85, 1.0, j / 20.0);
-        profile.push_back({angle, r, 0.5 * j / 20});
+    constexpr int kRows = 14;
+    for (int j = 0; j <= kRows; ++j) {
+        double share = static_cast<double>(j) / kRows, angle = edge * share;
+        double r = eyeSurface(angle - kInward, 0) - 0.004 * smoothstep(0.85, 1.0, share);
+        profile.push_back({angle, r, 0.5 * share});
     }
     return revolved(eye, profile, eye.side > 0 ? "corneaLeft" : "corneaRight", "cornea");
 }
@@ -298,33 +339,36 @@ Part makeCaruncle(const Eye& eye) {
     Part part;
     part.name = eye.side > 0 ? "caruncleLeft" : "caruncleRight";
     part.material = "caruncle";
-    EyePoint centre;  // a mound on the eye that rises into the corner and runs out into the white
-    centre.out = eye.lower[6].out;
-    centre.up = 0.5 * (eye.lower[6].up + eye.upper[6].up);
-    constexpr uint32_t kAround = 32, kRows = 12;
-    for (uint32_t j = 0; j <= kRows; ++j)
-        for (uint32_t i = 0; i < kAround; ++i) {
-            double r = static_cast<double>(j) / kRows, a = 2 * kPi * i / kAround;
+    // A sheet between the lids of the inner corner, tucked behind both: at the corner as high as their inner edges, then down onto the
+    // white, where it ends below its surface. On it the caruncle, a lumpy mound, and the plica, a crescent that opens towards the iris.
+    constexpr uint32_t kAlong = 30, kAcross = 24;
+    const double last = static_cast<double>(eye.lower.size() - 1);
+    for (uint32_t j = 0; j <= kAlong; ++j)
+        for (uint32_t i = 0; i <= kAcross; ++i) {
+            const double t = kFleshEnd * j / kAlong, v = glm::mix(-kFleshTuck, 1 + kFleshTuck, static_cast<double>(i) / kAcross),
+                         at = t * last;
+            const auto k = static_cast<size_t>(at);
+            const EyePoint &low = eye.lower[k], &high = eye.upper[k], &low2 = eye.lower[k + 1], &high2 = eye.upper[k + 1];
+            const double share = at - static_cast<double>(k), lowUp = glm::mix(low.up, low2.up, share),
+                         highUp = glm::mix(high.up, high2.up, share), beyond = std::max({-v, v - 1, 0.0});
             EyePoint e;
-            double out = 0.33 * r * std::cos(a);
-            e.out = centre.out + out;
-            e.up = centre.up + 0.22 * r * std::sin(a);
-            double lump = 0.012 * std::sin(3 * a + 1) * std::sin(kPi * r);
-            e.height = 0.10 * std::pow(1 - r * r, 1.2) - 0.02 + lump - 0.55 * std::min(out, 0.0) * (1 - 0.5 * r);
+            e.out = 0.5 * (glm::mix(low.out, low2.out, share) + glm::mix(high.out, high2.out, share));
+            e.up = glm::mix(lowUp, highUp, v) + (v < 0 ? -0.05 : 0.05) * beyond;
+            const double corner = std::max(glm::mix(low.height, low2.height, share) - kLidThickness, 0.0);
+            const CornerFlesh flesh = cornerFlesh(t, v);
+            e.height = 0.62 * corner + 0.03 - 0.10 * smoothstep(0.105, 0.165, flesh.along) + flesh.height - (0.12 + 0.3 * corner) * beyond;
             part.positions.push_back(eye.placed(e));
-            part.uvs.emplace_back(0.5 + 0.5 * r * std::cos(a), 0.5 + 0.5 * r * std::sin(a));
+            part.uvs.push_back(fleshUv(t / kFleshEnd, (v + kFleshTuck) / (1 + 2 * kFleshTuck)));
         }
-    for (uint32_t j = 0; j < kRows; ++j)
-        for (uint32_t i = 0; i < kAround; ++i) {
-            uint32_t p = j * kAround + i, q = j * kAround + (i + 1) % kAround;
-            Triangle one = {p, p + kAround, q + kAround}, two = {p, q + kAround, q};
+    for (uint32_t j = 0; j < kAlong; ++j)
+        for (uint32_t i = 0; i < kAcross; ++i) {
+            const uint32_t p = j * (kAcross + 1) + i, q = p + kAcross + 1;
+            Triangle one = {p, q, q + 1}, two = {p, q + 1, p + 1};
             if (eye.side < 0) std::swap(one[1], one[2]), std::swap(two[1], two[2]);
-            if (j > 0) part.triangles.push_back(two);
             part.triangles.push_back(one);
+            part.triangles.push_back(two);
         }
     part.normals = normalsOf(part.positions, part.triangles);
-    for (uint32_t i = 1; i < kAround; ++i) part.normals[0] += part.normals[i];  // the middle is one point
-    for (uint32_t i = 0; i < kAround; ++i) part.normals[i] = glm::normalize(part.normals[0]);
     return part;
 }
 

@@ -28,6 +28,8 @@ struct Eye {
     // Both lids moved by a share of the way to the line where they meet; 1, 1 closes the eye. Points far from the lids do not move; points
     // of `onMargin` slide together.
     dvec3 lidsMoved(dvec3 p, bool upperLid, bool onMargin, double upperShare, double lowerShare) const;
+    // A point of a lid, raised or lowered by as much as the surface below it when the eye turns: radians to the left and up.
+    dvec3 raisedOver(dvec3 p, dvec2 gaze) const;
     double closingLine(double out) const;
     double margin(bool upperLid, double out) const;
 };
@@ -41,12 +43,24 @@ struct Part {
     std::vector<std::vector<dvec3>> morphs;  // displacements, one list a target; may be empty
 };
 
+// A vector from an eye's centre, when the eye turns up and then left; radians to the left and up.
+dvec3 turned(dvec3 p, dvec2 gaze);
 double eyeSurface(double out, double up);  // distance from the eyeball's centre to sclera or cornea
 // Fits the lids of the subdivided head around both eyes and adds their margins.
 std::array<Eye, 2> fitLids(Surface& head);
 Part makeEyeball(const Eye& eye);
 Part makeCornea(const Eye& eye);
 Part makeCaruncle(const Eye& eye);
+// The flesh in an inner corner, `t` of the margins' length from it, `v` from the lower lid to the upper: cm above its sheet, and how much
+// of each part there is.
+struct CornerFlesh {
+    double height = 0, caruncle = 0, plica = 0, lump = 0;
+    double along = 0;  // `t` where the slit is half as high, along the plica's crescent
+};
+CornerFlesh cornerFlesh(double t, double v);
+inline constexpr double kFleshEnd = 0.215, kFleshTuck = 0.45;  // the sheet: of the margins' length; of the slit's height, behind either lid
+// Its place in the eye's picture, in a corner that the map of the eyeball leaves free; `along`, `across`: 0..1 over the sheet.
+dvec2 fleshUv(double along, double across);
 // Of a vertex: the lash that it is of.
 struct Lash {
     uint32_t root = 0;  // the nearest vertex of the skin

@@ -119,7 +119,7 @@ const MaterialText kMaterials[] = {
     {"skin", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0,"roughnessFactor":0.5})"},
     {"eye", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1},"metallicFactor":0,"roughnessFactor":0.2})"},
     {"cornea", R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.06],"metallicFactor":0,"roughnessFactor":0.03})"},
-    {"caruncle", R"("pbrMetallicRoughness":{"baseColorFactor":[0.62,0.31,0.26,1],"metallicFactor":0,"roughnessFactor":0.3})"},
+    {"caruncle", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1},"metallicFactor":0,"roughnessFactor":0.2})"},
     {"teeth", R"("pbrMetallicRoughness":{"baseColorFactor":[0.66,0.60,0.50,1],"metallicFactor":0,"roughnessFactor":0.28})"},
     {"tongue", R"("pbrMetallicRoughness":{"baseColorFactor":[0.42,0.15,0.13,1],"metallicFactor":0,"roughnessFactor":0.42})"},
     {"drop", R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.10],"metallicFactor":0,"roughnessFactor":0.03})"},

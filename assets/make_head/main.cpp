@@ -129,7 +129,9 @@ Result<size_t> make(const std::string& facePath, const std::string& folder) {
         std::vector<Lash> ofDrop;
         Part drops = makeLashDrops(eye, lashes, ofVertex, full, ofDrop);
         drops.morphs = lashMorphs(drops, ofDrop, head, eye, parts[0].morphs, full);
-        for (Part& part : std::vector<Part>{makeEyeball(eye), makeCaruncle(eye), lashes, drops}) parts.push_back(part);
+        Part ball = makeEyeball(eye);
+        ball.morphs = eyeMorphs(ball, eye);
+        for (Part& part : std::vector<Part>{ball, makeCaruncle(eye), lashes, drops}) parts.push_back(part);
     }
     std::vector<double> jaw;
     Part teeth = makeTeeth(jaw);
@@ -140,7 +142,10 @@ Result<size_t> make(const std::string& facePath, const std::string& folder) {
     Part brows = makeBrows(head, roots);
     brows.morphs = carriedMorphs(roots, parts[0].morphs);
     for (Part& part : std::vector<Part>{teeth, tongue, brows, makeHair(head)}) parts.push_back(part);
-    for (const Eye& eye : eyes) parts.push_back(makeCornea(eye));  // last, because they are transparent
+    for (const Eye& eye : eyes) {  // last, because they are transparent
+        Part& cornea = parts.emplace_back(makeCornea(eye));
+        cornea.morphs = eyeMorphs(cornea, eye);
+    }
 
     std::error_code error;
     std::filesystem::create_directories(folder, error);

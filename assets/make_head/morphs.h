@@ -8,9 +8,11 @@
 
 namespace rivulet::head {
 
-inline const std::vector<std::string> kMorphNames = {"blinkLeft",   "blinkRight", "browInnerUp", "browDown",    "squintLeft",
-                                                     "squintRight", "frown",      "mouthOpen",   "mouthPucker", "smile",
-                                                     "cheekRaise",  "brimLeft",   "brimRight"};
+inline const std::vector<std::string> kMorphNames = {
+    "blinkLeft", "blinkRight",  "browInnerUp", "browDown",     "browKnit",   "squintLeft", "squintRight",   "frown",
+    "mouthOpen", "mouthPucker", "smile",       "mouthStretch", "mouthPress", "chinRaise",  "upperLipRaise", "cheekRaise",
+    "swallow",   "lookLeft",    "lookRight",   "lookUp",       "lookDown",   "brimLeft",   "brimRight"};
+inline constexpr double kGazeTurns = 25 * kPi / 180;  // of the morphs look..., which turn both eyes
 
 std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array<Eye, 2>& eyes);
 // The same for lashes, which go with the lid they grow from.
@@ -19,6 +21,8 @@ std::vector<std::vector<dvec3>> lashMorphs(const Part& lashes, const std::vector
                                            const std::vector<std::vector<dvec3>>& skin, const std::vector<dvec3>& wet);
 // The morphs of a part whose vertices move as the given vertices of the skin do.
 std::vector<std::vector<dvec3>> carriedMorphs(const std::vector<uint32_t>& roots, const std::vector<std::vector<dvec3>>& skin);
+// Of an eyeball or its cornea, which turns about the eye's centre.
+std::vector<std::vector<dvec3>> eyeMorphs(const Part& part, const Eye& eye);
 // Of a part that goes with the jaw, each vertex by its share.
 std::vector<std::vector<dvec3>> jawMorphs(const Part& part, const std::vector<double>& jaw);
 

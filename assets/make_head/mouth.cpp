@@ -56,7 +56,7 @@ Part makeTeeth(std::vector<double>& jaw) {
                 const double middle = edge + (upper ? 0.5 : -0.5) * height + 0.03 * (hash(k, upper ? 1 : 2, side > 0 ? 1 : 0, 5) - 0.5);
                 const double thick = k < 3 ? 0.34 : 0.62;
                 const size_t before = part.positions.size();
-                addBall(part, 14, 10, [&](dvec3 d) {
+                addBall(part, 12, k < 5 ? 8 : 6, [&](dvec3 d) {
                     const double x = signedPower(d.x, 0.42), y = signedPower(d.y, 0.45), z = signedPower(d.z, 0.8);
                     const double biting = upper ? -y : y, neck = 1 - 0.22 * smoothstep(0.2, -1.0, biting);
                     // The cutting edge is thin, the neck thick.

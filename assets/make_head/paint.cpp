@@ -90,7 +90,7 @@ class Brow {
                 glm::mix(1.35, 0.25, smoothstep(0.0, 0.35, t)) - 0.55 * across * smoothstep(0.15, 0.6, t) - 0.25 * smoothstep(0.6, 1.0, t);
             angle += 0.35 * (hash(h, 2, 0, 71) - 0.5);
             double length = glm::mix(0.55, 0.75, hash(h, 3, 0, 71)) * (0.6 + 0.4 * std::sin(kPi * std::min(t + 0.2, 1.0)));
-            double weight = (0.55 + 0.4 * hash(h, 4, 0, 71)) * smoothstep(-0.06, 0.22, t);
+            double weight = (0.55 + 0.4 * hash(h, 4, 0, 71)) * smoothstep(-0.04, 0.32, t);
             for (int s = 0; s <= 40; ++s) {
                 double u = s / 40.0;
                 dvec2 p = at + length * (u - 0.35) * dvec2(std::cos(angle - 0.5 * u), std::sin(angle - 0.5 * u));
@@ -175,6 +175,21 @@ void spreadOut(Picture& picture, std::vector<char> known, int texels) {
 
 dvec3 rgb(int r, int g, int b) { return dvec3(r, g, b) / 255.0; }
 
+const dvec3 kWhiteByCorner = rgb(206, 150, 138);  // of an eye, towards the nose
+
+// The sheet of an inner corner: what is not caruncle or plica is the conjunctiva, which pales into the white.
+dvec3 fleshColour(dvec2 place) {
+    const double t = kFleshEnd * place.x, v = glm::mix(-kFleshTuck, 1 + kFleshTuck, place.y);
+    const CornerFlesh flesh = cornerFlesh(t, v);
+    const double grain = fractal(dvec3(t * 150, v * 12, 0.3), 3, 411), vein = 1 - std::abs(fractal(dvec3(t * 55, v * 5, 0.7), 3, 412)) * 7;
+    dvec3 colour = glm::mix(rgb(184, 96, 88), rgb(190, 150, 138), smoothstep(0.085, 0.15, flesh.along));
+    colour = glm::mix(colour, rgb(214, 128, 116), flesh.caruncle);
+    colour = glm::mix(colour, rgb(234, 172, 152), 0.8 * flesh.lump);
+    colour = glm::mix(colour, rgb(208, 136, 126), 0.75 * flesh.plica);
+    colour = glm::mix(colour, rgb(176, 72, 66), 0.35 * std::max(0.0, vein) * (1 - flesh.caruncle) * smoothstep(0.17, 0.12, t));
+    return colour * (1 + 0.05 * grain);
+}
+
 }  // namespace
 
 SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
@@ -226,7 +241,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         colour += dvec3(0.030, 0.024, 0.018) * fractal(p * 0.35, 3, 11);
         double blotch = fractal(p * 1.6, 4, 12), speck = fractal(p * 7.0, 3, 13), grain = fractal(p * 24.0, 2, 14);
         double red =
-            0.62 * cheek + 0.62 * nose + 0.55 * wing + 0.25 * chin + 0.62 * ear + 0.22 * lid + 0.4 * corner + 0.38 * blotch + 0.18 * speck;
+            0.62 * cheek + 0.62 * nose + 0.55 * wing + 0.25 * chin + 0.62 * ear + 0.14 * lid + 0.12 * corner + 0.38 * blotch + 0.18 * speck;
         red += 0.35 * glm::clamp(hollow, 0.0, 1.5) * face * (1 - 0.7 * byEye);
         colour += glm::clamp(red, -0.4, 1.6) * dvec3(0.008, -0.072, -0.062);
         colour += forehead * dvec3(0.012, 0.016, 0.006);
@@ -242,7 +257,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         // Short hair: denser up the scalp, with a scattered edge.
         double crop = cropAt(p, ear);
         double stubble = 0.5 + 0.5 * cells(p * 13.0, 93, which);
-        colour = glm::mix(colour, rgb(74, 54, 42), crop * glm::clamp(0.62 + 0.28 * stubble + 0.1 * grain, 0.0, 0.92));
+        colour = glm::mix(colour, rgb(74, 54, 42), std::pow(crop, 1.5) * glm::clamp(0.62 + 0.28 * stubble + 0.1 * grain, 0.0, 0.92));
 
         // Lips: lines across them, darker towards where they meet.
         double fan = p.x * (1 + 0.22 * (p.y + 4.2)), broken = fractal(dvec3(p.x * 4, p.y * 4, p.z), 3, 41);
@@ -267,9 +282,10 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         for (int c = 0; c < 3; ++c) put(skin.albedo, i, c, colour[c]);
 
         // What crying reddens: the rims of the lids and the skin around the eyes, the nose and its wings, the cheeks a little, the chin.
-        double around = byEye * std::max(smoothstep(1.5, 0.05, toLower) * smoothstep(-0.2, 0.02, toLower), lid);
-        double flush = std::max({1.0 * rim * byEye, 0.75 * around, 0.85 * corner, 0.85 * nose, 0.8 * wing, 0.45 * cheek, 0.3 * chin,
-                                 0.25 * lip, 0.35 * bell(m, {0, 5.6, 5.6}, {2.2, 1.0, 2.0})});
+        double around = byEye * std::max(smoothstep(1.1, 0.05, toLower) * smoothstep(-0.2, 0.02, toLower), 0.7 * lid);
+        double edge = byEye * std::max(smoothstep(0.16, 0.02, std::abs(toLower)), smoothstep(0.12, 0.02, std::abs(toUpper)));
+        double flush = std::max({1.0 * rim * byEye, 0.85 * edge, 0.52 * around, 0.22 * corner, 0.85 * nose, 0.8 * wing, 0.45 * cheek,
+                                 0.3 * chin, 0.25 * lip, 0.35 * bell(m, {0, 5.6, 5.6}, {2.2, 1.0, 2.0})});
         put(skin.flush, i, 0, flush * (0.75 + 0.35 * blotch + 0.25 * speck) * face);
         // Where lips meet, and in the mouth and the nostrils.
         double meets = lip * smoothstep(0.5, 0.85, std::abs(glm::normalize(t.normal).y));
@@ -314,31 +330,38 @@ Picture paintEye() {
     const double limbus = std::asin(kLimbusRadius / kEyeRadius);
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
-            dvec2 q = (dvec2(x, kSize - 1 - y) + 0.5) / double{kSize} - 0.5;
+            const dvec2 at = (dvec2(x, kSize - 1 - y) + 0.5) / double{kSize};
+            const dvec2 q = at - 0.5, place = (at - fleshUv(0, 0)) / (fleshUv(1, 1) - fleshUv(0, 0));
+            if (std::max(place.x, place.y) < 1.04) {
+                const dvec3 colour = fleshColour(glm::clamp(place, dvec2(0), dvec2(1)));
+                for (int c = 0; c < 3; ++c) put(eye, static_cast<size_t>(y) * kSize + x, c, colour[c]);
+                continue;
+            }
             double angle = std::min(kPi, kPi * std::pow(2 * glm::length(q), 2.0)), turn = std::atan2(q.y, q.x), r = angle / limbus;
             dvec3 on(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
             // The white: warm towards the corners, with veins that thin out towards the iris.
-            dvec3 colour = glm::mix(rgb(226, 218, 210), rgb(212, 176, 160), smoothstep(0.9, 2.0, angle));
-            colour += 0.012 * fractal(on * 5.0, 3, 61);
+            dvec3 colour = glm::mix(rgb(204, 194, 184), rgb(198, 160, 146), smoothstep(0.8, 2.0, angle));
+            colour += 0.016 * fractal(on * 5.0, 3, 61);
             double wander = fractal(on * 3.5, 3, 62), vein = 1 - std::abs(fractal(on * 4.5 + wander * 0.8, 4, 63)) * 9;
             double fine = 1 - std::abs(fractal(on * 9.0 + wander, 3, 64)) * 8;
             double veins = std::max(0.0, vein) * 0.65 + std::max(0.0, fine) * 0.35;
-            colour = glm::mix(colour, rgb(190, 84, 76), 0.55 * veins * smoothstep(0.58, 1.2, angle));
-            // The iris: fibres along its radius, a paler frill around the pupil, a dark ring at the limbus.
+            colour = glm::mix(colour, rgb(184, 76, 68), 0.55 * veins * smoothstep(0.58, 1.2, angle));
+            // The iris: fibres along its radius, a warmer frill around the pupil, a soft dark ring at the limbus.
             double f = r;
             dvec3 around(std::cos(turn), std::sin(turn), 0.0);
             double fibre = fractal(dvec3(around.x * 22, around.y * 22, f * 1.6), 3, 65),
                    fork = fractal(dvec3(around.x * 9, around.y * 9, f * 3.0), 3, 66);
-            double frill = std::exp(-std::pow((f - 0.47 - 0.05 * fork) / 0.09, 2.0));
-            dvec3 iris = glm::mix(rgb(112, 92, 62), rgb(84, 108, 106), smoothstep(0.45, 0.72, f + 0.12 * fork));
-            iris *= 1 + 0.75 * fibre + 0.30 * fork;
-            iris = glm::mix(iris, rgb(164, 128, 80) * (1 + 0.5 * fibre), 0.55 * frill);
-            iris *= 1 - 0.62 * smoothstep(0.76, 1.0, f);
-            iris = glm::mix(rgb(10, 8, 8), iris, smoothstep(0.34, 0.385, f + 0.012 * fork));
+            double frill = std::exp(-std::pow((f - 0.47 - 0.05 * fork) / 0.10, 2.0));
+            dvec3 iris = glm::mix(rgb(112, 86, 58), rgb(94, 98, 88), smoothstep(0.45, 0.75, f + 0.12 * fork));
+            iris *= 1 + 0.60 * fibre + 0.28 * fork;
+            iris = glm::mix(iris, rgb(146, 110, 70) * (1 + 0.5 * fibre), 0.5 * frill);
+            iris *= 1 - 0.55 * smoothstep(0.70, 0.98, f);
+            iris = glm::mix(rgb(9, 7, 7), iris, smoothstep(0.34, 0.40, f + 0.012 * fork));
             // Both eyes show this chart with the nose on its left.
-            double corner = smoothstep(0.60, 0.95, angle) * smoothstep(-0.6, -0.95, std::cos(turn));
-            colour = glm::mix(colour, rgb(206, 140, 126), 0.8 * corner);
-            colour = glm::mix(iris, colour, smoothstep(0.92, 1.09, r));
+            double corner = smoothstep(0.62, 1.05, angle) * smoothstep(-0.5, -0.95, std::cos(turn));
+            colour = glm::mix(colour, kWhiteByCorner, 0.8 * corner);
+            // The cornea's rim is clouded: the white runs over the iris.
+            colour = glm::mix(iris, colour, smoothstep(0.86, 1.16, r + 0.03 * fork));
             for (int c = 0; c < 3; ++c) put(eye, static_cast<size_t>(y) * kSize + x, c, colour[c]);
         }
     return eye;

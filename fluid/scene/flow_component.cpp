@@ -22,10 +22,9 @@ namespace rivulet {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kMicrolitre = 1.0e6;  // picolitres
-constexpr float kBrimStep = 6.0e-4F;   // m, between the places of a brim
+constexpr float kBrimStep = 6.0e-4F;  // m, between the places of a brim
 constexpr int kMostBrimPlaces = 400;
-constexpr const char* kBrimMorphs[] = {"brimLeft", "brimRight"};
+constexpr const char *kBrimMorphs[] = {"brimLeft", "brimRight"}, *kBlinkMorphs[] = {"blinkLeft", "blinkRight"};
 constexpr double kReddened = 20 * kMicrolitre;  // of tears, after which eyes are about as red as they become
 
 vec3 along(const std::vector<vec3>& line, float way) {
@@ -195,6 +194,10 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
     group_ = scene.add(std::move(group));
     layer_ = std::make_shared<Layer>();
     const std::vector<mat4> stand = model.worldMatrices();
+    std::vector<vec3> eyes;
+    for (const ModelPart& part : model.parts)
+        if (part.material.eye) eyes.push_back(part.material.eye->centre);
+    findBlinks(*skin);
     for (ModelPart& part : model.parts) {
         Node node;
         node.name = part.name;
@@ -212,6 +215,7 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
                 node.material.blended = params_.material.opacity < 1;
             }
         }
+        std::optional<EyeTurns> turns = &part != skin ? takeEyeTurns(part, eyes) : std::nullopt;
         if (!part.morphs.empty() || !part.grips.empty()) {
             Result<Deformer> deformer = Deformer::create(*device_, part);
             if (!deformer) return deformer.error();
@@ -234,7 +238,8 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
         }
         node.mesh = std::make_shared<const Mesh>(part.mesh);
         looks_.push_back({node.material, node.visible});
-        scene.add(std::move(node));
+        const int at = scene.add(std::move(node));
+        if (turns) turningEyes_.push_back({at, std::move(*turns)});
     }
     return ok();
 }
@@ -392,13 +397,44 @@ void FlowComponent::lookIntoLids() {
     });
 }
 
+void FlowComponent::findBlinks(const ModelPart& skin) {
+    for (size_t side = 0; side < 2; ++side)
+        for (size_t m = 0; m < skin.morphs.size(); ++m) {
+            if (skin.morphs[m].name != kBlinkMorphs[side]) continue;
+            const std::vector<float> shares = sharesOfBlink(skin.morphs, m);
+            for (const ExpressionParams& e : params_.expression) {
+                const auto at =
+                    std::find_if(skin.morphs.begin(), skin.morphs.end(), [&](const MorphTarget& t) { return t.name == e.morph; });
+                blinkShares_[side].push_back(at == skin.morphs.end() ? 0 : shares[static_cast<size_t>(at - skin.morphs.begin())]);
+            }
+        }
+}
+
+// The weight of each of params_.expression at a time. A blink takes the lids the rest of their way, from wherever the others have left
+// them.
+std::vector<float> FlowComponent::weightsAt(double time) const {
+    std::vector<float> weights;
+    for (const ExpressionParams& e : params_.expression) weights.push_back(params_.expressive * static_cast<float>(e.at(time)));
+    for (size_t side = 0; side < 2; ++side) {
+        const std::vector<float>& shares = blinkShares_[side];
+        const auto blinks = [&](size_t e) { return params_.expression[e].morph == kBlinkMorphs[side]; };
+        float moved = 0;
+        const size_t rows = std::min(weights.size(), shares.size());
+        for (size_t e = 0; e < rows; ++e)
+            if (!blinks(e)) moved += weights[e] * shares[e];
+        for (size_t e = 0; e < rows; ++e)
+            if (blinks(e)) weights[e] *= std::max(1 - moved, 0.0F);
+    }
+    return weights;
+}
+
 // Sets the expression at a time.
 void FlowComponent::bend(double time) {
+    const std::vector<float> expression = weightsAt(time);
     for (Deformed& d : deformed_) {
         std::vector<float> weights(d.morphs, 0.0F);
-        for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
-            if (d.morphOf[e] >= 0)
-                weights[static_cast<size_t>(d.morphOf[e])] += params_.expressive * static_cast<float>(params_.expression[e].at(time));
+        for (size_t e = 0; e < std::min(d.morphOf.size(), expression.size()); ++e)
+            if (d.morphOf[e] >= 0) weights[static_cast<size_t>(d.morphOf[e])] += expression[e];
         for (size_t side = 0; side < 2; ++side)
             if (d.brimMorph[side] >= 0) weights[static_cast<size_t>(d.brimMorph[side])] += (*lidsFull_)[side];
         d.deformer->run(weights, d.bones);
@@ -409,6 +445,14 @@ dmat4 FlowComponent::worldAt(double time) const { return glm::translate(dmat4(1.
 
 void FlowComponent::placeNode(Scene& scene) const {
     scene.nodes()[static_cast<size_t>(group_)].local = mat4(placed_->toWorld());
+    const std::vector<float> expression = weightsAt(acted_);
+    for (const TurningEye& eye : turningEyes_) {
+        vec3 turn(0.0F);
+        for (size_t e = 0; e < expression.size(); ++e)
+            if (const auto found = eye.turns.turns.find(params_.expression[e].morph); found != eye.turns.turns.end())
+                turn += expression[e] * found->second;
+        scene.nodes()[static_cast<size_t>(eye.node)].local = eye.turns.at(turn);
+    }
     const double wept = 1 - std::exp(-static_cast<double>(emitted_) / kReddened);
     for (size_t k = 0; k < looks_.size(); ++k) {
         Node& node = scene.nodes()[static_cast<size_t>(group_) + 1 + k];

@@ -12,6 +12,7 @@
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/placed_flow.h"
+#include "fluid/scene/eye_motion.h"
 #include "fluid/scene/flow_params.h"
 #include "fluid/scene/skin_model.h"
 
@@ -79,11 +80,13 @@ class FlowComponent {
     bool thesis() const { return params_.mode == "thesis"; }
     void drawThesis();
     Status layOut(ModelPart& skin, const Log& log);
+    void findBlinks(const ModelPart& skin);
     Status addParts(Model& model, const ModelPart* skin, Scene& scene);
     Status prepareFlow(const Mesh& skin);
     Status takeMarks(const SkinModel& skin, const std::string& sceneFolder);
     std::vector<SkinBrim> brims(const FlowMesh& mesh);
     Status readRegions(const std::string& sceneFolder, const Mesh& skin);
+    std::vector<float> weightsAt(double time) const;
     void bend(double time);
     void lookIntoLids();
     void emit(double time, double seconds, std::vector<AirDrop>& air);
@@ -108,8 +111,14 @@ class FlowComponent {
     };
     std::vector<Look> looks_;  // of the parts, as the file and `hide` say
     std::vector<Deformed> deformed_;
-    std::shared_ptr<const Deformer> skinDeformer_;  // null: the skin does not deform
-    std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps are made; kept in mode thesis
+    struct TurningEye {
+        int node = 0;
+        EyeTurns turns;
+    };
+    std::vector<TurningEye> turningEyes_;            // eyeballs and corneas
+    std::array<std::vector<float>, 2> blinkShares_;  // of each of params_.expression, for the left and right eye; may be empty
+    std::shared_ptr<const Deformer> skinDeformer_;   // null: the skin does not deform
+    std::vector<vec2> uvs_;                          // 3 a triangle of the flow's mesh, until the maps are made; kept in mode thesis
     // Of a skin with new UVs: the file's, of its vertices, and the file's vertex of each that the skin has now.
     std::vector<vec2> maskUvs_;
     std::vector<uint32_t> maskOf_;

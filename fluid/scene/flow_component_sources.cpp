@@ -12,7 +12,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kMicrolitre = 1.0e6;  // picolitres
 constexpr size_t kMostEmitted = 4096;  // drops of one source in one step
 
 // Returns two directions perpendicular to the unit vector `n`.

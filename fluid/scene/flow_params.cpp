@@ -27,7 +27,7 @@ double ExpressionParams::at(double time) const {
     if (pulse > 0) {
         const double number = std::floor(periods), wide = std::min(double{pulse} / double{period}, 1 - kPulseStray);
         const double at = (periods - number - kPulseStray * chosenOf(number)) / wide;
-        wave = glm::smoothstep(0.0, 0.3, at) * (1 - glm::smoothstep(0.3, 1.0, at));
+        wave = glm::smoothstep(0.0, 0.3 * (1 - double{hold}), at) * (1 - glm::smoothstep(1 - 0.7 * (1 - double{hold}), 1.0, at));
     }
     return std::clamp(double{weight} + double{swing} * wave, 0.0, 1.0);
 }
@@ -72,6 +72,7 @@ void ExpressionParams::visit(ParamVisitor& v) {
     v.value({"period", "s", "period of the oscillation or the pulses", 0.05, 3600, kLog}, period);
     v.value({"phase", "", "phase of the oscillation, in periods", 0, 1}, phase);
     v.value({"pulse", "s", "width of a pulse in each period, such as a blink, up to 0.7 of it; 0 = a sine wave", 0, 3600}, pulse);
+    v.value({"hold", "", "share of a pulse's width at its full height: 0 = a peak, 0.95 = a quick look aside and back", 0, 0.99}, hold);
 }
 
 void FlowMotionParams::visit(ParamVisitor& v) {

@@ -11,6 +11,8 @@
 
 namespace rivulet {
 
+inline constexpr double kMicrolitre = 1.0e6;  // picolitres
+
 // A source of drops.
 struct FlowSourceParams {
     std::string kind = "spot";     // corner | brim | spot | strewn | rain
@@ -31,11 +33,13 @@ struct FlowSourceParams {
 };
 
 // One morph target's weight over time, kept within 0 to 1: weight + swing sin(2 pi (t / period + phase)). With a pulse, such as a blink or
-// a sob, weight + swing for about `pulse` s once in each period, a little earlier or later each time; its rise takes 0.3 of it.
+// a sob, weight + swing for about `pulse` s once in each period, a little earlier or later each time; of what `hold` leaves of it, its rise
+// takes 0.3.
 struct ExpressionParams {
     std::string morph;
     float weight = 0, swing = 0, period = 3, phase = 0;
     float pulse = 0;  // s; 0: a sine wave
+    float hold = 0;   // of a pulse: the share of it at full height
     double at(double time) const;
     void visit(ParamVisitor& v);
 };

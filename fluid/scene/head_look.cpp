@@ -78,6 +78,15 @@ std::vector<uint32_t> lowerLidEdge(const Mesh& skin, const EyeLook& eye, const v
     return highest;
 }
 
+// Of places along a line; its ends stay.
+std::vector<vec3> smoothed(std::vector<vec3> line) {
+    for (int pass = 0; pass < 8; ++pass) {
+        const std::vector<vec3> before = line;
+        for (size_t k = 1; k + 1 < line.size(); ++k) line[k] = 0.25F * before[k - 1] + 0.5F * before[k] + 0.25F * before[k + 1];
+    }
+    return line;
+}
+
 }  // namespace
 
 ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width) {
@@ -91,11 +100,7 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
     if (edge.size() < 6) return part;
     std::vector<vec3> lid(edge.size());
     for (size_t k = 0; k < edge.size(); ++k) lid[k] = skin.mesh.positions[edge[k]];
-    for (int pass = 0; pass < 4; ++pass) {
-        std::vector<vec3> smooth = lid;
-        for (size_t k = 1; k + 1 < lid.size(); ++k) smooth[k] = 0.25F * lid[k - 1] + 0.5F * lid[k] + 0.25F * lid[k + 1];
-        lid = smooth;
-    }
+    lid = smoothed(lid);
     constexpr float kBrimful = 1.7F;  // of the rest's width
     std::vector<vec3> brimful;
     for (size_t k = 0; k < lid.size(); ++k) {
@@ -125,12 +130,17 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
         if (morph.name.starts_with("brim")) continue;
         MorphTarget& own = part.morphs.emplace_back();
         own.name = morph.name;
+        std::vector<vec3> moved(stations, vec3(0.0F));
         for (uint32_t k = 0; k < stations; ++k) {
             const auto at = std::lower_bound(morph.vertices.begin(), morph.vertices.end(), edge[k]);
-            if (at == morph.vertices.end() || *at != edge[k]) continue;
+            if (at != morph.vertices.end() && *at == edge[k]) moved[k] = morph.offsets[static_cast<size_t>(at - morph.vertices.begin())];
+        }
+        moved = smoothed(moved);  // else the film is dented where the lid's vertices are uneven
+        for (uint32_t k = 0; k < stations; ++k) {
+            if (moved[k] == vec3(0.0F)) continue;
             for (uint32_t j = 0; j < kAcross; ++j) {
                 own.vertices.push_back(k * kAcross + j);
-                own.offsets.push_back(morph.offsets[static_cast<size_t>(at - morph.vertices.begin())]);
+                own.offsets.push_back(moved[k]);
             }
         }
     }

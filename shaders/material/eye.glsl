@@ -13,7 +13,8 @@ vec2 uvOfEye(vec3 at, float mirror) {
 vec2 throughCornea(vec2 uv, vec3 toEye) {
     vec3 at = (toEyeMatrix * vec4(posWorld, 1.0)).xyz;
     vec3 ray = -normalize(mat3(toEyeMatrix) * toEye);
-    if (length(at.xy) > cornea.w * 1.02 || at.z < 0.0) return uv;
+    float edge = length(at.xy) / cornea.w;
+    if (edge > 1.08 || at.z < 0.0) return uv;
     // Follows the ray back to the cornea's sphere, refracts it, and continues to the iris.
     vec3 from = at - vec3(0.0, 0.0, cornea.x);
     float b = dot(from, ray), c = dot(from, from) - cornea.y * cornea.y;
@@ -27,14 +28,14 @@ vec2 throughCornea(vec2 uv, vec3 toEye) {
     float r = length(on.xy);
     on.xy *= min(1.0, cornea.w * 0.985 / max(r, 1.0e-4));
     float mirror = (uv.x - 0.5) * at.x < 0.0 ? -1.0 : 1.0;
-    return uvOfEye(vec3(on.xy, cornea.z), mirror);
+    return mix(uvOfEye(vec3(on.xy, cornea.z), mirror), uv, smoothstep(0.88, 1.08, edge));  // the cornea runs out into the white
 }
 
 void shadeEye(vec2 uv, vec3 n, vec3 toEye, vec3 albedo, vec3 falling, float lit, float open, out vec3 matte, out vec3 shine) {
     vec3 at = (toEyeMatrix * vec4(posWorld, 1.0)).xyz, lamp = frame.lightDir.xyz;
     vec3 lampEye = normalize(mat3(toEyeMatrix) * lamp);
     float r = length(at.xy) / cornea.w;
-    float iris = at.z > 0.0 ? 1.0 - smoothstep(0.94, 1.03, r) : 0.0;
+    float iris = at.z > 0.0 ? 1.0 - smoothstep(0.86, 1.08, r) : 0.0;
     // Crying fills the veins of the white and tints it, most towards the corners.
     vec3 red = pow(max(albedo, 0.0), vec3(1.0, 2.0, 1.9)) * vec3(1.0, 0.80, 0.80);
     albedo = mix(albedo, red, flush * (1.0 - iris) * mix(0.45, 1.0, smoothstep(0.55, 1.0, length(at.xy))));
@@ -44,9 +45,10 @@ void shadeEye(vec2 uv, vec3 n, vec3 toEye, vec3 albedo, vec3 falling, float lit,
     vec3 white = vec3(texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.x)).r, texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.y)).r,
                       texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.z)).r);
     // Shadow of the upper lid and in the corners.
-    open *= mix(1.0, 0.45, smoothstep(0.05, 0.48, at.y)) * mix(1.0, 0.15, smoothstep(0.45, 0.9, abs(at.x)));
+    float lids = smoothstep(-0.05, 0.42, at.y), corners = smoothstep(0.42, 0.92, abs(at.x));
+    open *= mix(1.0, 0.30, lids) * mix(1.0, 0.3, corners);
     lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));
-    vec3 arriving = white * pow(vec3(lit), vec3(0.7, 0.9, 1.0)) * falling * 0.3183099;
+    vec3 arriving = white * pow(vec3(lit), vec3(0.7, 0.9, 1.0)) * falling * (0.3183099 * mix(1.0, 0.35, lids) * mix(1.0, 0.7, corners));  // lashes shade what the lid does not
     // The iris: a bowl; the cornea focuses light on the side away from the lamp.
     vec2 away = at.xy / cornea.w;
     float gathered = 0.55 + 1.5 * smoothstep(-0.1, 0.9, -dot(away, normalize(lampEye.xy + 1.0e-4)) * length(lampEye.xy)) * smoothstep(0.25, 0.75, r);

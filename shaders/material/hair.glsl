@@ -12,7 +12,7 @@ vec2 hairAt(vec2 uv, vec2 strand) {
         middle = mix(0.3, 0.7, chance.x);
         float end = mix(0.55, 1.0, chance.y);
         width *= 1.0 - smoothstep(0.3 * end, end, uv.y);
-        covered = smoothstep(0.0, 0.03, uv.y);
+        covered = smoothstep(0.0, 0.12, uv.y);
     }
     float off = place - number - middle, from = max(abs(off) - 0.5 * pixel, -0.5 * width), to = min(abs(off) + 0.5 * pixel, 0.5 * width);
     float one = clamp((to - from) / pixel, 0.0, 1.0), many = strand.y > 1.0 ? smoothstep(0.6, 1.4, pixel) : 0.0;

@@ -25,8 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kShipped = fs::path(RIVULET_SOURCE_DIR) / "assets/meshes/head";
-const std::set<std::string> kMorphs = {"blinkLeft", "blinkRight", "browInnerUp", "browDown", "squintLeft", "squintRight",
-                                       "frown",     "mouthOpen",  "mouthPucker", "smile",    "cheekRaise"};
+const std::set<std::string> kMorphs = {"blinkLeft", "blinkRight",    "browInnerUp", "browDown", "browKnit",   "squintLeft", "squintRight",
+                                       "frown",     "mouthOpen",     "mouthPucker", "smile",    "cheekRaise", "mouthPress", "mouthStretch",
+                                       "chinRaise", "upperLipRaise", "swallow",     "lookLeft", "lookRight",  "lookUp",     "lookDown"};
 const dvec3 kEyes[2] = {{0.0317, 0.0268, 0.0260}, {-0.0317, 0.0268, 0.0260}};  // head.json says the same
 
 class Head : public ::testing::Test {
@@ -46,14 +47,17 @@ class Head : public ::testing::Test {
         for (unsigned i = 0; i < count; ++i) all.emplace_back(from[i].x, from[i].y, from[i].z);
         return all;
     }
-    std::vector<dvec3> skinWith(const std::vector<std::string>& morphs) const {
-        const aiMesh& skin = mesh("skin");
+    std::vector<dvec3> skinWith(const std::vector<std::string>& morphs, double weight = 1) const {
+        return partWith("skin", morphs, weight);
+    }
+    std::vector<dvec3> partWith(const std::string& part, const std::vector<std::string>& morphs, double weight = 1) const {
+        const aiMesh& skin = mesh(part);
         std::vector<dvec3> rest = positions(skin.mVertices, skin.mNumVertices), moved = rest;
         for (unsigned a = 0; a < skin.mNumAnimMeshes; ++a) {
             const aiAnimMesh& morph = *skin.mAnimMeshes[a];
             if (std::find(morphs.begin(), morphs.end(), morph.mName.C_Str()) == morphs.end()) continue;
             for (unsigned i = 0; i < skin.mNumVertices; ++i)
-                moved[i] += dvec3(morph.mVertices[i].x, morph.mVertices[i].y, morph.mVertices[i].z) - rest[i];
+                moved[i] += weight * (dvec3(morph.mVertices[i].x, morph.mVertices[i].y, morph.mVertices[i].z) - rest[i]);
         }
         return moved;
     }
@@ -85,14 +89,16 @@ class Head : public ::testing::Test {
         std::vector<std::tuple<dvec3, dvec3, dvec3>> near_;
     };
     // Eyeball and cornea lie behind the lids, by at least a tenth of a millimetre.
-    void expectEyesBehindLids(const std::vector<dvec3>& skin) const {
+    // The eyes turned by `degrees` about the axis.
+    void expectEyesBehindLids(const std::vector<dvec3>& skin, dvec3 axis = dvec3(0, 1, 0), double degrees = 0) const {
+        const dmat3 turn(glm::mat3_cast(glm::angleAxis(glm::radians(degrees), axis)));
         for (int k = 0; k < 2; ++k) {
             Around lids(mesh("skin"), skin, kEyes[k]);
             for (const char* part : {"eye", "cornea"}) {
                 const aiMesh& eye = mesh(std::string(part) + (k == 0 ? "Left" : "Right"));
                 double least = 1;
                 for (dvec3 p : positions(eye.mVertices, eye.mNumVertices)) {
-                    dvec3 d = p - kEyes[k];
+                    dvec3 d = turn * (p - kEyes[k]);
                     if (d.z < 0.003) continue;
                     least = std::min(least, lids.along(glm::normalize(d)) - glm::length(d));
                 }
@@ -281,6 +287,62 @@ TEST_F(Head, LidsLieOnTheEyesOpenAndShut) {
         EXPECT_GT(open, 0.008);
         EXPECT_LT(open, 0.012);
         EXPECT_LT(opening(Around(mesh("skin"), shut, eye)), 0.0005);
+    }
+}
+
+// Where an eyeball's pole has come to, as seen from its centre.
+dvec3 poleOf(const std::vector<dvec3>& ball, dvec3 centre) { return glm::normalize(ball[0] - centre); }
+
+TEST_F(Head, EyesTurnTogetherAsRigidBallsAndLidsFollow) {
+    const double turns = 25;
+    const std::map<std::string, dvec3> looks = {
+        {"lookLeft", {0, 1, 0}}, {"lookRight", {0, -1, 0}}, {"lookUp", {-1, 0, 0}}, {"lookDown", {1, 0, 0}}};
+    for (const auto& [look, axis] : looks) {
+        const glm::dmat3 turn(glm::mat3_cast(glm::angleAxis(glm::radians(turns), axis)));
+        for (int k = 0; k < 2; ++k)
+            for (const char* part : {"eye", "cornea"}) {
+                const std::string name = std::string(part) + (k == 0 ? "Left" : "Right");
+                const std::vector<dvec3> rest = partWith(name, {}), moved = partWith(name, {look});
+                double most = 0;
+                for (size_t v = 0; v < rest.size(); ++v)
+                    most = std::max(most, glm::distance(turn * (rest[v] - kEyes[k]), moved[v] - kEyes[k]));
+                EXPECT_LT(most, 4e-6) << name << ' ' << look;
+            }
+        for (const double weight : {0.5, 1.0}) expectEyesBehindLids(skinWith({look}, weight), axis, turns * weight);
+    }
+    // Not crossed: the lines of sight meet in front of the face, half a metre away or further.
+    const dvec3 left = poleOf(partWith("eyeLeft", {}), kEyes[0]), right = poleOf(partWith("eyeRight", {}), kEyes[1]);
+    const double meet = (kEyes[0].x - kEyes[1].x) / (right.x / right.z - left.x / left.z);
+    EXPECT_GT(meet, 0.5);
+    EXPECT_LT(meet, 5.0);
+    for (dvec3 eye : kEyes) {
+        const double rest = opening(Around(mesh("skin"), skinWith({}), eye)),
+                     down = opening(Around(mesh("skin"), skinWith({"lookDown"}), eye)),
+                     up = opening(Around(mesh("skin"), skinWith({"lookUp"}), eye));
+        EXPECT_LT(down, 0.8 * rest) << "the upper lid goes with a look down";
+        EXPECT_GT(down, 0.3 * rest);
+        EXPECT_GT(up, rest);
+    }
+}
+
+// The flesh of an inner corner fills it, and nothing else: it ends well before the cornea and stays behind the edges of the lids.
+TEST_F(Head, CaruncleLiesInTheCorner) {
+    for (int k = 0; k < 2; ++k) {
+        const double side = k == 0 ? 1 : -1;
+        const std::vector<dvec3> flesh = partWith(k == 0 ? "caruncleLeft" : "caruncleRight", {}),
+                                 white = partWith(k == 0 ? "eyeLeft" : "eyeRight", {});
+        double furthest = -1, highest = 0;
+        const Around lids(mesh("skin"), skinWith({}), kEyes[k]);
+        for (dvec3 p : flesh) {
+            const dvec3 d = p - kEyes[k];
+            if (glm::length(d) < 0.012) continue;  // below the white
+            furthest = std::max(furthest, side * d.x);
+            highest = std::max(highest, glm::length(d) - 0.012);
+            EXPECT_LT(glm::length(d), lids.along(glm::normalize(d)) + 1e-5) << "in front of a lid";
+        }
+        EXPECT_LT(furthest, -0.0066) << "the cornea's edge is at 5.9 mm";
+        EXPECT_GT(furthest, -0.0095);
+        EXPECT_GT(highest, 0.0015) << "a mound";
     }
 }
 

@@ -78,7 +78,7 @@ TEST_F(SceneModel, theHeadHasItsPartsMorphsAndTextures) {
               (std::set<std::string>{"skin", "eyeLeft", "eyeRight", "caruncleLeft", "caruncleRight", "lashesLeft", "lashesRight",
                                      "lashDropsLeft", "lashDropsRight", "corneaLeft", "corneaRight", "teeth", "tongue", "brows", "hair"}));
     const ModelPart& skin = *head->find("skin");
-    ASSERT_EQ(skin.morphs.size(), 11U);
+    ASSERT_EQ(skin.morphs.size(), 21U);
     EXPECT_EQ(skin.morphs[0].name, "blinkLeft");
     for (const MorphTarget& morph : skin.morphs) {
         EXPECT_FALSE(morph.vertices.empty()) << morph.name;

@@ -257,7 +257,8 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         // Short hair: denser up the scalp, with a scattered edge.
         double crop = cropAt(p, ear);
         double stubble = 0.5 + 0.5 * cells(p * 13.0, 93, which);
-        colour = glm::mix(colour, rgb(74, 54, 42), std::pow(crop, 1.5) * glm::clamp(0.62 + 0.28 * stubble + 0.1 * grain, 0.0, 0.92));
+        colour = glm::mix(colour, rgb(74, 54, 42),
+                          std::pow(std::max(crop, 0.0), 1.5) * glm::clamp(0.62 + 0.28 * stubble + 0.1 * grain, 0.0, 0.92));
 
         // Lips: lines across them, darker towards where they meet.
         double fan = p.x * (1 + 0.22 * (p.y + 4.2)), broken = fractal(dvec3(p.x * 4, p.y * 4, p.z), 3, 41);

@@ -129,9 +129,11 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     c.log_ = log;
     Result<SkinModel> loaded = loadSkinModel(params, sceneFolder);
     if (!loaded) return loaded.error();
-    if (Status marked = c.takeMarks(*loaded, sceneFolder); !marked) return marked.error();
+    Result<FoundFace> face = c.takeMarks(*loaded, sceneFolder);
+    if (!face) return face.error();
     Model& model = loaded->model;
     if (Status dressed = dressHead(model, fs::path(loaded->path).parent_path().string()); !dressed) return dressed.error();
+    wetFoundEyes(model, loaded->skin, *face);
     ModelPart& skin = model.parts[loaded->skin];
     if (Status laid = c.layOut(skin, log); !laid) return laid.error();
     if (Status added = c.addParts(model, &skin, scene); !added) return added.error();
@@ -143,7 +145,8 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     return made;
 }
 
-Status FlowComponent::takeMarks(const SkinModel& skin, const std::string& sceneFolder) {
+// The face that was sought for them, if it was.
+Result<FoundFace> FlowComponent::takeMarks(const SkinModel& skin, const std::string& sceneFolder) {
     Result<SkinMarks> marks = skinMarks(params_, sceneFolder, skin, needsMarks(params_) ? Seek::ifMarksAreMissing : Seek::never);
     if (!marks) return marks.error();
     marks_ = marks->marks;
@@ -153,7 +156,7 @@ Status FlowComponent::takeMarks(const SkinModel& skin, const std::string& sceneF
         log_.notice(fmt::format("{} stands on its side or its head, and tears run down -Y: set its rotation to {}, {}, {}", params_.mesh,
                                 turn.x, turn.y, turn.z));
     }
-    return ok();
+    return std::move(marks->found);
 }
 
 // Usable UVs: the mesh's, or new ones, for which its vertices are split at the edges of charts.

@@ -83,7 +83,7 @@ class FlowComponent {
     void findBlinks(const ModelPart& skin);
     Status addParts(Model& model, const ModelPart* skin, Scene& scene);
     Status prepareFlow(const Mesh& skin);
-    Status takeMarks(const SkinModel& skin, const std::string& sceneFolder);
+    Result<FoundFace> takeMarks(const SkinModel& skin, const std::string& sceneFolder);
     std::vector<SkinBrim> brims(const FlowMesh& mesh);
     Status readRegions(const std::string& sceneFolder, const Mesh& skin);
     std::vector<float> weightsAt(double time) const;

@@ -171,6 +171,21 @@ EyeLook eyeLookOf(const Mesh& mesh) {
     return look;
 }
 
+void wetFoundEyes(Model& head, size_t skin, const FoundFace& face) {
+    constexpr float kWet = 0.08F, kUpright = 0.7F;
+    const bool known = std::any_of(head.parts.begin(), head.parts.end(), [](const ModelPart& p) { return p.material.eye != nullptr; });
+    if (known || face.by != FoundFace::By::balls || face.up.y < kUpright) return;
+    for (ModelPart& part : head.parts)
+        if (std::find(face.balls.begin(), face.balls.end(), nameOf(part)) != face.balls.end() && head.parts[skin].name != part.name)
+            part.material.roughness = std::min(part.material.roughness, kWet);
+    for (size_t side = 0; side < 2; ++side) {
+        EyeLook eye{face.eyes[side].centre, face.forward, face.eyes[side].radius};
+        eye.corneaRadius = 0;  // its bulge is not known
+        ModelPart line = makeTearLine(head.parts[skin], eye, std::string(kTearLine) + (side == 0 ? "Left" : "Right"));
+        if (!line.mesh.indices.empty()) head.parts.push_back(std::move(line));
+    }
+}
+
 Status dressHead(Model& head, const std::string& folder) {
     std::vector<ModelPart> lines;
     for (ModelPart& part : head.parts) {

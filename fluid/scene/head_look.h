@@ -5,6 +5,7 @@
 
 #include "engine/core/result.h"
 #include "engine/scene/model.h"
+#include "fluid/scene/find_face.h"
 
 namespace rivulet {
 
@@ -23,5 +24,8 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
 // Parts `hair` and `brows` on ribbons (a pair of vertices across each, see Material::strand) become hairs; `teeth` and `tongue` without a
 // picture of occlusion stand in the shade of a mouth.
 Status dressHead(Model& head, const std::string& folder);
+// Of a head without such names whose face was found by its eyeballs: they shine wetly, and a tear line lies along each lower lid. Their
+// pictures stay as the file lays them. Nothing where the head does not stand upright.
+void wetFoundEyes(Model& head, size_t skin, const FoundFace& face);
 
 }  // namespace rivulet

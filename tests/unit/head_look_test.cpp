@@ -54,6 +54,39 @@ TEST(HeadLook, aTearLineFollowsTheLowerLid) {
     EXPECT_GT(up, 2e-4F) << "a squint lifts the lower lid";
 }
 
+// With other names for its parts it is any head: its eyes are found, and get what a found eye can have.
+TEST(HeadLook, foundEyesAreWetAndHaveATearLine) {
+    Result<Model> head = importModel(kHead + "head.glb");
+    ASSERT_TRUE(head);
+    size_t skin = 0;
+    std::string left;
+    for (size_t p = 0; p < head->parts.size(); ++p) {
+        ModelPart& part = head->parts[p];
+        if (part.name == "skin") skin = p;
+        if (!part.name.starts_with("eye")) continue;
+        part.name = "ball" + part.name.substr(3);
+        part.material.roughness = 0.6F;
+    }
+    const FoundFace face = findFace(head->parts, skin);
+    ASSERT_EQ(face.by, FoundFace::By::balls) << face.missing;
+    wetFoundEyes(*head, skin, face);
+    EXPECT_LT(head->find("ballLeft")->material.roughness, 0.1F);
+    for (const float side : {1.0F, -1.0F}) {
+        const ModelPart* line = head->find(side > 0 ? "tearLineLeft" : "tearLineRight");
+        ASSERT_NE(line, nullptr);
+        for (const vec3& p : {vec3(0.026281F, 0.023210F, 0.036903F), vec3(0.033109F, 0.022293F, 0.038291F)}) {  // of head.json's margin
+            float nearest = 1;
+            for (const vec3& q : line->mesh.positions) nearest = std::min(nearest, glm::distance(p * vec3(side, 1, 1), q));
+            EXPECT_LT(nearest, 1.0e-3F);
+        }
+        EXPECT_EQ(line->morphs.back().name, side > 0 ? "brimLeft" : "brimRight");
+    }
+    const size_t parts = head->parts.size();
+    head->parts[0].material.eye = std::make_shared<EyeLook>();
+    wetFoundEyes(*head, skin, face);
+    EXPECT_EQ(head->parts.size(), parts) << "a dressed head stays as it is";
+}
+
 TEST(HeadLook, strandsAreWidenedAboutTheirMiddle) {
     Result<Model> head = importModel(kHead + "head.glb");
     ASSERT_TRUE(head);

@@ -210,7 +210,9 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
         from = &hostMoved;
     }
     if (from != nullptr) {
-        device->run(take, f, {&given, from, &point, &driven}, f.places);
+        FlowStep t = f;
+        if (steps == 1) t.inverseDt = 0;  // the first pose is where the skin is, not a motion
+        device->run(take, t, {&given, from, &point, &driven}, f.places);
         moved = stirring = true;
     } else if (stirring) {
         device->run(rest, f, {&driven}, f.places);

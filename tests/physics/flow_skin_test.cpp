@@ -44,6 +44,30 @@ TEST(FlowOnAMovingSkin, ADropKeepsItsPlaceOverAPlateThatIsPulledAway) {
     }
 }
 
+// The pose of the first step is not a motion: drops stay where they were put, though the skin at rest is elsewhere.
+TEST(FlowOnAMovingSkin, TheFirstPoseThrowsNoDrops) {
+    auto device = cpu();
+    const Shape rest = sheetShape(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
+    SurfaceFlowParams p;
+    p.hold = p.drag = p.airDrag = p.trail = 0;
+    SurfaceFlow flow = flowOn(*device, rest, p);
+    const SkinPoint at = nearestPoint(flow.mesh(), vec3(0.02F, 0, 0.05F));
+    flow.add(at, kMicrolitres);
+    std::vector<vec3> moved = rest.positions;
+    for (vec3& x : moved) x = vec3(x.z + 0.1F, x.y + 0.02F, -x.x);  // at most 27 m/s in one frame
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_TRUE(flow.step({.gravity = vec3(0.0F), .positions = moved}, 1.0 / 60));
+        const SkinDrop d = flow.drops().at(0);
+        EXPECT_EQ(d.at.triangle, at.triangle) << k;
+        EXPECT_LT(glm::length(d.velocity), 1e-6F) << k;
+        EXPECT_NEAR(d.position.y, 0.02F, 1e-6F);
+    }
+    // From then on motion acts: the skin is pulled away below the drop.
+    for (vec3& x : moved) x.x += 0.01F;
+    EXPECT_TRUE(flow.step({.gravity = vec3(0.0F), .positions = moved}, 1.0 / 60));
+    EXPECT_NEAR(flow.drops().at(0).velocity.x, -0.6F, 1e-3F);
+}
+
 // On a rotating plate a drop moves straight in the world, which is a spiral relative to the plate (centrifugal and Coriolis forces).
 TEST(FlowOnAMovingSkin, ADropWithoutRetentionMovesStraightOverARotatingPlate) {
     auto device = cpu();

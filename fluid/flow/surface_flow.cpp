@@ -477,18 +477,20 @@ void SurfaceFlow::ledgerLater(std::function<void(const Ledger&)> then) const {
 
 void SurfaceFlow::brimsLater(std::function<void(std::span<const uint64_t>)> then) const {
     const Impl& w = *impl_;
+    constexpr size_t kDrop = DROP_UINTS * sizeof(uint32_t);
     w.device->readLater(
-        w.drop, size_t{w.count()} * DROP_UINTS * sizeof(uint32_t),
-        [places = w.placesOf, first = size_t{w.count() - w.brimPlaces}, then = std::move(then)](std::span<const std::byte> bytes) {
+        w.drop, w.brimPlaces * kDrop,
+        [places = w.placesOf, then = std::move(then)](std::span<const std::byte> bytes) {
             const auto* state = reinterpret_cast<const uint32_t*>(bytes.data());
             std::vector<uint64_t> content;
-            size_t at = first;
+            size_t at = 0;
             for (const uint32_t count : places) {
                 uint64_t& sum = content.emplace_back();
                 for (uint32_t k = 0; k < count; ++k, ++at) sum += state[at * DROP_UINTS + DROP_VOLUME];
             }
             then(content);
-        });
+        },
+        (w.count() - w.brimPlaces) * kDrop);
 }
 
 }  // namespace rivulet

@@ -128,9 +128,9 @@ class Device {
     virtual void fill(Buffer& to, uint32_t word) = 0;                                          // every 4 bytes
     virtual void copy(const Buffer& from, Buffer& to, size_t bytes) = 0;
 
-    // Copies the first `bytes` of `from` as of this call and passes them to `then` during a later poll(), without waiting. On the cpu
-    // `then` is called at once.
-    virtual void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) = 0;
+    // Copies `bytes` of `from`, from `offset` on, as of this call and passes them to `then` during a later poll(), without waiting. On the
+    // cpu `then` is called at once.
+    virtual void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset = 0) = 0;
     virtual void poll() = 0;
 
     // buffers[k] is binding k + 1 of the kernel's ARGS; binding 0 is the parameter block. 0 threads: nothing happens.

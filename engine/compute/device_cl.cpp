@@ -54,7 +54,7 @@ class ClDevice final : public Device {
     void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override;
     void fill(Buffer& to, uint32_t word) override;
     void copy(const Buffer& from, Buffer& to, size_t bytes) override;
-    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) override;
+    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset) override;
     void poll() override;
     void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) override;
     void finish() override;
@@ -382,14 +382,15 @@ void ClDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
     succeeded(code, fmt::format("copy {} bytes", bytes));
 }
 
-void ClDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
-    ASSERT(bytes <= from.bytes(), "read inside the buffer");
+void ClDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset) {
+    ASSERT(offset <= from.bytes() && bytes <= from.bytes() - offset, "read inside the buffer");
     PendingRead pending{Event(), std::vector<std::byte>(bytes), std::move(then)};
     if (lost()) return;
     if (bytes > 0) {
         cl_event done = nullptr;
-        const cl_int code = enqueue(
-            [&] { return clEnqueueReadBuffer(queue_.get(), memory(from), CL_FALSE, 0, bytes, pending.bytes.data(), 0, nullptr, &done); });
+        const cl_int code = enqueue([&] {
+            return clEnqueueReadBuffer(queue_.get(), memory(from), CL_FALSE, offset, bytes, pending.bytes.data(), 0, nullptr, &done);
+        });
         if (!succeeded(code, fmt::format("read {} bytes", bytes))) return;
         pending.done = Event(done);
         clFlush(queue_.get());

@@ -239,9 +239,9 @@ void CpuDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
     if (bytes > 0) std::memcpy(hostPointer<std::byte>(to), hostPointer<std::byte>(from), bytes);
 }
 
-void CpuDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
-    ASSERT(bytes <= from.bytes(), "read inside the buffer");
-    then(std::span(hostPointer<const std::byte>(from), bytes));
+void CpuDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset) {
+    ASSERT(offset <= from.bytes() && bytes <= from.bytes() - offset, "read inside the buffer");
+    then(std::span(hostPointer<const std::byte>(from) + offset, bytes));
 }
 
 void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {

@@ -47,7 +47,7 @@ class CpuDevice final : public Device {
     void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override;
     void fill(Buffer& to, uint32_t word) override;
     void copy(const Buffer& from, Buffer& to, size_t bytes) override;
-    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) override;
+    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset) override;
     void poll() override {}
     void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) override;
     void finish() override {}

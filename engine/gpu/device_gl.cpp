@@ -64,7 +64,7 @@ class GlDevice final : public Device {
     void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override;
     void fill(Buffer& to, uint32_t word) override;
     void copy(const Buffer& from, Buffer& to, size_t bytes) override;
-    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) override;
+    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset) override;
     void poll() override;
     void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) override;
     void finish() override;
@@ -278,11 +278,12 @@ gpu::Buffer GlDevice::stagingFor(size_t bytes) {
     return {};
 }
 
-void GlDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
-    ASSERT(bytes <= from.bytes(), "read inside the buffer");
+void GlDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset) {
+    ASSERT(offset <= from.bytes() && bytes <= from.bytes() - offset, "read inside the buffer");
     PendingRead pending{stagingFor(bytes), bytes, {}, std::move(then)};
     if (!pending.staging) return;
-    if (bytes > 0) glCopyNamedBufferSubData(nameOf(from), pending.staging.name(), 0, 0, static_cast<GLsizeiptr>(bytes));
+    if (bytes > 0)
+        glCopyNamedBufferSubData(nameOf(from), pending.staging.name(), static_cast<GLintptr>(offset), 0, static_cast<GLsizeiptr>(bytes));
     pending.copied = Fence::now();
     pendingReads_.push_back(std::move(pending));
 }

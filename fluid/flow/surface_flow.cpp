@@ -40,6 +40,8 @@ Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const 
     for (const uint32_t k : mesh.given) {
         if (k >= positions.size())
             return badInput(fmt::format("a skin has {} positions, too few: its triangles use number {}", positions.size(), k));
+        const vec3 x = glm::abs(positions[k]);
+        if (x.x <= kFarthest && x.y <= kFarthest && x.z <= kFarthest) continue;  // most: a Status for each takes longer than the test
         if (Status sound = checkPlace(k, positions[k]); !sound) return sound;
     }
     return ok();
@@ -210,7 +212,9 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
         from = &hostMoved;
     }
     if (from != nullptr) {
-        device->run(take, f, {&given, from, &point, &driven}, f.places);
+        FlowStep t = f;
+        if (steps == 1) t.inverseDt = 0;  // the first pose is where the skin is, not a motion
+        device->run(take, t, {&given, from, &point, &driven}, f.places);
         moved = stirring = true;
     } else if (stirring) {
         device->run(rest, f, {&driven}, f.places);
@@ -475,18 +479,20 @@ void SurfaceFlow::ledgerLater(std::function<void(const Ledger&)> then) const {
 
 void SurfaceFlow::brimsLater(std::function<void(std::span<const uint64_t>)> then) const {
     const Impl& w = *impl_;
+    constexpr size_t kDrop = DROP_UINTS * sizeof(uint32_t);
     w.device->readLater(
-        w.drop, size_t{w.count()} * DROP_UINTS * sizeof(uint32_t),
-        [places = w.placesOf, first = size_t{w.count() - w.brimPlaces}, then = std::move(then)](std::span<const std::byte> bytes) {
+        w.drop, w.brimPlaces * kDrop,
+        [places = w.placesOf, then = std::move(then)](std::span<const std::byte> bytes) {
             const auto* state = reinterpret_cast<const uint32_t*>(bytes.data());
             std::vector<uint64_t> content;
-            size_t at = first;
+            size_t at = 0;
             for (const uint32_t count : places) {
                 uint64_t& sum = content.emplace_back();
                 for (uint32_t k = 0; k < count; ++k, ++at) sum += state[at * DROP_UINTS + DROP_VOLUME];
             }
             then(content);
-        });
+        },
+        (w.count() - w.brimPlaces) * kDrop);
 }
 
 }  // namespace rivulet

@@ -61,7 +61,8 @@ struct SurfaceFlowInputs {
     vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2, in the world
     vec3 wind{0.0F};                   // m/s, of the air, in the world
     dmat4 toWorld{1.0};                // the skin's frame -> the world: turned and moved, not scaled
-    // m, in the skin's frame: the mesh's positions if the skin deforms, all of them. Its motion acts on the drops.
+    // m, in the skin's frame: the mesh's positions if the skin deforms, all of them. Its motion acts on the drops, from the second step on:
+    // the first positions are where the skin is.
     std::span<const vec3> positions = {};
     const Buffer* moved = nullptr;  // the same on the device (vec4, w unused), instead. A place that is not finite stays where it was
 };

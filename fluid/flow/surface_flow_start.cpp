@@ -86,22 +86,25 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     const auto slots = static_cast<uint32_t>(params.capacity) + brimPlaces;
     Bounds around;
     for (const vec3& p : mesh.rest) around.add(p);
-    const vec3 size = around.size();
-    const float longest = std::max({size.x, size.y, size.z});
-    // A skin may move within a margin. Cells as wide as the reach of two of the largest drops; wider on a large skin, which would have too
-    // many: they are counted in each step, which on the cpu takes as long as all else for a few drops.
+    // Cells as wide as the reach of two of the largest drops; wider on a large skin, which would have too many: they are counted in each
+    // step, which on the cpu takes as long as all else for a few drops. They repeat in space, so that the skin may move anywhere; two sides
+    // of it at rest are a cell apart.
     corners = around;
-    const float margin = 0.25F * longest;
-    around.add(around.min - margin);
-    around.add(around.max + margin);
     const double reach =
         std::max(2 * double{params.touch} * contactRadius(meanAngle(params)) * std::cbrt(double{params.largestDrop} * kMicrolitre),
                  std::max(double{params.filmReach}, 2 * double{params.touch} * kFilmRadius * double{params.filmReach}));
-    const double mostCells = on.backend() == Backend::cpu ? std::clamp(8.0 * slots, 8192.0, 32768.0) : 131072.0;
-    const dvec3 all(around.size());
-    const float h = thesis ? thesis->cell() : static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / mostCells)));
-    if (thesis) around = thesis->around();
-    Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots);
+    const double mostCells = on.backend() == Backend::cpu ? std::clamp(2.0 * slots, 2048.0, 8192.0) : 32768.0;
+    const dvec3 size(around.size());
+    double wide = reach;
+    while ((size.x / wide + 2) * (size.y / wide + 2) * (size.z / wide + 2) > mostCells) wide *= 1.02;
+    const float h = thesis ? thesis->cell() : static_cast<float>(wide);
+    if (thesis)
+        around = thesis->around();
+    else
+        around.add(around.max + h);
+    PairTraits traits;
+    traits.repeats = !thesis;
+    Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots, traits);
     if (!made) return made.error();
     grid = std::make_unique<NeighborGrid>(std::move(*made));
     if (!thesis) grid->setMargin(static_cast<float>(reach) / h);  // the cpu's lists hold the neighbours, however wide the cells
@@ -125,7 +128,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     }
     for (auto [kernel, path] : {std::pair(&meet, "flow/meet"), std::pair(&gather, "flow/gather"), std::pair(&spread, "flow/spread"),
                                 std::pair(&press, "flow/press")}) {
-        Result<PairKernel> found = PairKernel::find(on, path, {});
+        Result<PairKernel> found = PairKernel::find(on, path, on.backend() == Backend::cpu ? PairTraits() : traits);
         if (!found) return found.error();
         *kernel = *found;
     }

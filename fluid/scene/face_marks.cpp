@@ -65,13 +65,14 @@ Status readOwn(const Reader& r, const Json::Value& eyes, FaceMarks& marks) {
     return ok();
 }
 
-Status readAxis(const Reader& r, const Json::Value& root, const char* key, vec3& axis) {
+Status readAxis(const Reader& r, const Json::Value& root, const char* key, vec3& axis, bool& known) {
     if (!root.isMember(key)) return ok();
     Result<vec3> given = r.point(root[key], 1);
     if (!given) return given.error();
     const float length = glm::length(*given);
     if (!(length > 0) || !std::isfinite(length)) return r.wrong(root[key], "a direction with a length is needed");
     axis = *given / length;
+    known = true;
     return ok();
 }
 
@@ -105,10 +106,11 @@ Result<FaceMarks> readFaceMarks(const std::string& path) {
     const Json::Value& root = *tree;
     if (root.isObject() && root["eyes"].isObject()) {
         if (Status read = readOwn(reader, root["eyes"], marks); !read) return read.error();
-        for (const auto& [key, axis] : {std::pair("up", &marks.up), std::pair("forward", &marks.forward)})
-            if (Status read = readAxis(reader, root, key, *axis); !read) return read.error();
+        if (Status read = readAxis(reader, root, "up", marks.up, marks.knowsUp); !read) return read.error();
+        if (Status read = readAxis(reader, root, "forward", marks.forward, marks.knowsForward); !read) return read.error();
     } else if (root.isObject() && root["tear_points"].isObject()) {
         if (Status read = readLandmarks(reader, root["tear_points"], marks); !read) return read.error();
+        marks.knowsUp = marks.knowsForward = true;
     } else
         return badInput(fmt::format("{}: has neither `eyes` nor `tear_points`: it marks no face", path));
     return marks;

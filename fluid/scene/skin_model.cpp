@@ -80,6 +80,20 @@ Result<std::string> marksFile(const FlowParams& params, const std::string& scene
     return fs::exists(beside, ignored) ? beside.string() : std::string();
 }
 
+// Where a face looks, across `up` and the line between its eyes; if they are not both marked, where it would by its file's axes.
+vec3 lookOf(const FaceMarks& marks) {
+    vec3 middle[2];
+    for (size_t side = 0; side < 2; ++side) {
+        const EyeMarks& eye = marks.eyes[side];
+        if (!eye.tear && eye.lowerLid.empty()) return marks.forward;
+        middle[side] = eye.lowerLid.empty() ? *eye.tear : vec3(0.0F);
+        for (const vec3& p : eye.lowerLid) middle[side] += p / static_cast<float>(eye.lowerLid.size());
+    }
+    const vec3 look = glm::cross(middle[0] - middle[1], marks.up);
+    const float length = glm::length(look);
+    return length > 0 ? look / length : marks.forward;
+}
+
 std::string noticeOf(const FlowParams& params, const SkinMarks& m) {
     const auto anyOf = [&](MarkOf kind) {
         return std::any_of(m.tears.begin(), m.tears.end(), [kind](MarkOf k) { return k == kind; }) ||
@@ -140,9 +154,9 @@ Result<SkinMarks> skinMarks(const FlowParams& params, const std::string& sceneFo
         Result<FaceMarks> read = readFaceMarks(m.file);
         if (!read) return read.error();
         m.marks = *read;
-        const mat3 turn(skin.to);
-        m.marks.up = glm::normalize(turn * m.marks.up);
-        m.marks.forward = glm::normalize(turn * m.marks.forward);
+        // Without `up` the scene's: its `rotation` has set the face upright.
+        if (m.marks.knowsUp) m.marks.up = glm::normalize(mat3(skin.to) * m.marks.up);
+        m.marks.forward = glm::normalize(mat3(skin.to) * m.marks.forward);
     }
     bool all = true;
     for (size_t side = 0; side < 2; ++side) {
@@ -153,6 +167,7 @@ Result<SkinMarks> skinMarks(const FlowParams& params, const std::string& sceneFo
         m.lids[side] = eye.lowerLid.size() >= 2 ? MarkOf::file : MarkOf::none;
         all = all && m.tears[side] == MarkOf::file && m.lids[side] == MarkOf::file;
     }
+    if (!m.file.empty() && !m.marks.knowsForward) m.marks.forward = lookOf(m.marks);
     if (seek == Seek::never || (seek == Seek::ifMarksAreMissing && all)) return m;
     m.found = findFace(skin.model.parts, skin.skin);
     if (m.found.found()) {

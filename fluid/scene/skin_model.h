@@ -32,7 +32,7 @@ std::string partName(const Model& model, size_t part);
 enum class MarkOf { none, file, found, proportions };
 
 struct SkinMarks {
-    FaceMarks marks;                        // in the flow's frame
+    FaceMarks marks;                        // in the flow's frame; `up` is +Y where neither the file says it nor a face was found
     std::string file;                       // of marks; "" = there is none
     std::array<MarkOf, 2> tears{}, lids{};  // of the left and right eye
     FoundFace found;                        // in the flow's frame; sought where the file leaves marks out

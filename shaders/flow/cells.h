@@ -5,10 +5,26 @@
 #define REACHED_WORDS 4096u
 #define REACHED_PARTS 10.0f /* bit k of the word behind them: some drop reaches as far as k to k + 1 of these parts of a cell */
 #if !defined(__cplusplus) || defined(RIVULET_KERNEL_UNIT)
-// The grid's cell of `x` along one axis, clamped to the grid.
-FN int cellAlong(float x, float origin, float scale, int cells) {
-    return TO_INT(min(max((x - origin) * scale, 0.0f), TO_FLOAT(cells - 1)));
+#include "shaders/fluid/grid/repeats.h"
+// The grid's cells from `low` to `high` along one axis: some in a row, and `over` more from the first one on, since cells repeat in space.
+STRUCT(CellSpan) {
+    int from;
+    int end;
+    int over;
+};
+// `first`: number of cells of padding; `cells`: with it.
+FN CellSpan cellSpan(float low, float high, float origin, float scale, int first, int cells) {
+    int count = cells - 2 * first;
+    float g = min(max(floor((low - origin) * scale), -FARTHEST_CELL), FARTHEST_CELL);
+    int many = TO_INT(min(max(floor((high - origin) * scale) - g, 0.0f), TO_FLOAT(count - 1)));
+    CellSpan s;
+    s.from = repeatedCell(TO_INT(g), first, count);
+    s.end = min(s.from + many + 1, first + count);
+    s.over = s.from + many + 1 - s.end;
+    return s;
 }
+FN int spanCount(CellSpan s) { return s.end - s.from + s.over; }
+FN int spanCell(CellSpan s, int k, int first) { return s.from + k < s.end ? s.from + k : first + k - (s.end - s.from); }
 FN uint reachedPart(float far, float inverse) { return 1u << min(TO_UINT(REACHED_PARTS * far * inverse), 31u); }
 // m: larger than any distance.
 FN float reachOf(uint parts, float cell) {

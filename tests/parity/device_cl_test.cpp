@@ -201,6 +201,16 @@ TEST_F(ClDeviceTest, readLaterDeliversTheValuesOfItsTimeInOrder) {
     device_->readLater(out, 4, [&](std::span<const std::byte>) { ADD_FAILURE() << "a device that ends delivers nothing"; });
 }
 
+TEST_F(ClDeviceTest, readLaterReadsFromAnOffset) {
+    const Buffer b = floats({1, 2, 3, 4});
+    std::vector<float> got(2);
+    device_->readLater(
+        b, 8, [&](std::span<const std::byte> bytes) { std::memcpy(got.data(), bytes.data(), bytes.size()); }, 4);
+    device_->finish();
+    device_->poll();
+    EXPECT_EQ(got, (std::vector<float>{2, 3}));
+}
+
 TEST_F(ClDeviceTest, timesAreSummedByKernelOnce) {
     Buffer in = floats(std::vector<float>(100000, 1.0F)), out = std::move(*device_->allocate(400000));
     for (int k = 0; k < 3; ++k) device_->run(scaleBy("0"), FactorParams{100000, 2, 0, 0}, {&in, &out}, 100000);

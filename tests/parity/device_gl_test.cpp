@@ -173,6 +173,16 @@ TEST_F(DeviceGl, ATooLargeBufferIsRefusedWithBothSizes) {
     EXPECT_EQ(device_->bytesAllocated(), 0U);
 }
 
+TEST_F(DeviceGl, ReadLaterReadsFromAnOffset) {
+    const Buffer b = make({1, 2, 3, 4});
+    std::vector<float> got(2);
+    device_->readLater(
+        b, 8, [&](std::span<const std::byte> bytes) { std::memcpy(got.data(), bytes.data(), bytes.size()); }, 4);
+    device_->finish();
+    device_->poll();
+    EXPECT_EQ(got, (std::vector<float>{2, 3}));
+}
+
 TEST_F(DeviceGl, ReadLaterHandsOverTheValueAsOfTheCall) {
     Buffer a = make({1});
     const Buffer b = make({0});

@@ -45,8 +45,8 @@ class TwinDevice final : public Device {
     void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override { cl_.read(from, bytes, offset); }
     void fill(Buffer& to, uint32_t word) override { cl_.fill(to, word); }
     void copy(const Buffer& from, Buffer& to, size_t bytes) override { cl_.copy(from, to, bytes); }
-    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) override {
-        cl_.readLater(from, bytes, std::move(then));
+    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then, size_t offset) override {
+        cl_.readLater(from, bytes, std::move(then), offset);
     }
     void poll() override { cl_.poll(); }
     void finish() override { cl_.finish(); }

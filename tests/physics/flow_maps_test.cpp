@@ -357,6 +357,29 @@ TEST(FlowMaps, TheSameMassInEveryLayout) {
     EXPECT_NEAR(volume[0] / 12e-9, 1, 1e-3);
 }
 
+// Far from the box that the skin has at rest, the same texels show the same drops.
+TEST(FlowMaps, FarFromTheRestPoseTheSameIsDrawn) {
+    const Skin ball = test::cubeBall(0.03F, 16);
+    std::vector<vec4> atRest;
+    for (const vec3& away : {vec3(0.0F), vec3(0.0F, 0.11F, 0.0F), vec3(8.0F, -2.0F, 4.0F)}) {
+        Drawn d(ball, 512, still());
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> any(-1.0F, 1.0F);
+        for (int k = 0; k < 40; ++k)
+            d.flow->add(nearestPoint(d.flow->mesh(), 0.03F * glm::normalize(vec3(any(random), any(random), any(random)))), kMicrolitre);
+        std::vector<vec3> moved = ball.positions;
+        for (vec3& x : moved) x += away;
+        EXPECT_TRUE(d.flow->step({.gravity = vec3(0.0F), .positions = moved}, 1.0 / 60));
+        d.maps->draw(*d.flow);
+        EXPECT_NEAR(d.drawnVolume() / (40 * kMicrolitre * 1e-15), 1, 0.01);
+        if (atRest.empty()) atRest = d.texels();
+        const std::vector<vec4> all = d.texels();
+        size_t differ = 0;
+        for (size_t k = 0; k < all.size(); ++k) differ += std::abs(all[k].z - atRest[k].z) > 0.01F ? 1 : 0;  // mm
+        EXPECT_EQ(differ, 0U) << away.x;
+    }
+}
+
 // Two lips a third of a millimetre apart that are connected far away: a drop on one leaves the other dry. A drop on a thin leaf leaves its
 // other side dry.
 TEST(FlowMaps, TheOtherLipStaysDry) {

@@ -183,7 +183,7 @@ Status NeighborGrid::Impl::findKernels() {
     };
     std::vector<Wanted> wanted;
     std::vector<Define> listDefines;
-    if (glm::any(traits.periodic)) listDefines.push_back({"PERIODIC", "1"});
+    if (glm::any(traits.periodic) || traits.repeats) listDefines.push_back({"PERIODIC", "1"});
     if (onCpu())
         wanted = {{&sortCount, "fluid/grid/cpu_sort_count", {}},
                   {&sortSegments, "fluid/grid/cpu_sort_segments", {}},
@@ -199,6 +199,7 @@ Status NeighborGrid::Impl::findKernels() {
         givenDefines.push_back({"GIVEN", "1"});
         std::vector<Define> countDefines = threads;
         if (traits.sleeps) countDefines.push_back({"SLEEP", "1"});
+        if (traits.repeats) countDefines.push_back({"REPEATS", "1"});
         wanted = {{&cellCount, "fluid/grid/cell_count", countDefines}, {&cellCountGiven, "fluid/grid/cell_count", givenDefines},
                   {&scanReduce, "fluid/grid/scan_reduce", scanSize},   {&scanBlocks, "fluid/grid/scan_blocks", scanSize},
                   {&scanApply, "fluid/grid/scan_apply", scanSize},     {&cellScatter, "fluid/grid/cell_scatter", threads},
@@ -232,6 +233,7 @@ CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
     j.count = sortAsleep ? count : awakeSlots;
     j.asleepCells = asleepCells();
     j.sortsAsleep = traits.sleeps && sortAsleep;
+    j.repeats = traits.repeats;
     j.chunks = chunks;
     j.groupCount = groupCount;
     j.listCapacity = listCapacity;
@@ -368,7 +370,8 @@ std::vector<Define> PairTraits::threadDefines() const {
 std::vector<Define> PairTraits::defines() const {
     std::vector<Define> d = threadDefines();
     if (matter) d.push_back({"MATTER", "1"});
-    if (glm::any(periodic)) d.push_back({"PERIODIC", "1"});
+    if (glm::any(periodic) || repeats) d.push_back({"PERIODIC", "1"});
+    if (repeats) d.push_back({"REPEATS", "1"});
     if (asleepRows) d.push_back({"SLEEP", "1"});
     return d;
 }
@@ -401,6 +404,7 @@ Status NeighborGrid::checkCells(const Bounds& inside, float h, double count, con
 
 Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits) {
     ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");
+    ASSERT(!traits.repeats || !(traits.linked || traits.follows || glm::any(traits.periodic)), "a grid that repeats has no bounds");
     ASSERT(!traits.linked || (device.backend() != Backend::cpu && traits.samples == 0 && !glm::any(traits.periodic)),
            "linked lists are for a GPU, without samples and periodic axes");
     auto impl = std::make_unique<Impl>();
@@ -420,7 +424,11 @@ Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, 
     if (Status few = checkCells(inside, h, count, traits); !few) return few.error();
     for (int k = 0; k < 3; ++k) {
         // One empty cell on every side: rows need no bounds checks.
-        if (traits.periodic[k]) {
+        if (traits.repeats) {
+            impl->cells[k] = std::max(static_cast<int>(std::ceil(size[k])), 2) + 2;
+            impl->period[k] = static_cast<float>(impl->cells[k] - 2) * h;
+            impl->scale[k] = 1.0F / h;
+        } else if (traits.periodic[k]) {
             // As many cells as fit, so that they meet where the axis wraps.
             const auto n = static_cast<int>(std::floor(size[k] * 1.0001F));
             if (n < 2)

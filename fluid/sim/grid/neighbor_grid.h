@@ -20,6 +20,7 @@ namespace rivulet {
 // What decides which form of the pair kernels a world needs.
 struct PairTraits {
     bvec3 periodic{false};    // axes on which the bounds wrap round
+    bool repeats = false;     // cells repeat in space along all axes: positions may be anywhere, distances are as without
     bool matter = false;      // particles differ: several liquids, or samples on bodies
     uint32_t samples = 0;     // on bodies: the last ids
     bool walls = true;        // else the box wraps round along all axes and there are no colliders
@@ -30,16 +31,16 @@ struct PairTraits {
     uint32_t workGroup = 0;   // threads, of a GPU; 0 = the device's default
     // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that tests which particles take part.
     std::vector<Define> threadDefines() const;
-    std::vector<Define> defines() const;  // MATTER, PERIODIC, SLEEP and those above: of every kernel with FOR_NEIGHBORS
+    std::vector<Define> defines() const;  // MATTER, PERIODIC, REPEATS, SLEEP and those above: of every kernel with FOR_NEIGHBORS
     // Defines for every kernel with walls; OPEN if there are none. `extra`: further defines.
     std::vector<Define> wallDefines(std::vector<Define> extra = {}) const;
 };
 
 class NeighborGrid {
   public:
-    // `inside`: where particles may be (m); `count`: slots, samples with them. Error: so many cells that memory would not hold them, with
-    // the spacing that would fit, unless traits.follows; a periodic axis shorter than 2 h. checkCells() reports the first of these before
-    // anything is allocated; its `count` may be too small.
+    // `inside`: where particles may be (m), with traits.repeats where most of them are; `count`: slots, samples with them. Error: so many
+    // cells that memory would not hold them, with the spacing that would fit, unless traits.follows; a periodic axis shorter than 2 h.
+    // checkCells() reports the first of these before anything is allocated; its `count` may be too small.
     static Status checkCells(const Bounds& inside, float h, double count, const PairTraits& traits);
     static Result<NeighborGrid> create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits = {});
     NeighborGrid(NeighborGrid&&) noexcept;

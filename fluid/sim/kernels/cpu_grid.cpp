@@ -1,6 +1,7 @@
 #include "fluid/sim/kernels/cpu_grid.h"
 
 #include "shaders/common/lang.h"
+#include "shaders/fluid/grid/repeats.h"
 
 namespace rivulet::RIVULET_KERNEL_UNIT {
 namespace {
@@ -13,6 +14,11 @@ struct Range {
 INLINE Range part(uint32_t count, uint32_t parts, uint32_t k) {
     return {static_cast<uint32_t>(uint64_t{count} * k / parts), static_cast<uint32_t>(uint64_t{count} * (k + 1) / parts)};
 }
+
+// The number of the cell of `g`, in cells from the grid's origin, where cells repeat in space.
+INLINE int cellOnce(float g, int cells) { return repeatedCell(static_cast<int>(floor(g)), 1, cells - 2); }
+// The same of half cells along x.
+INLINE int halfCellOnce(float g, int cells) { return repeatedCell(static_cast<int>(floor(2.0F * g)), 2, 2 * (cells - 2)); }
 
 // A thread for each chunk of particles: their cells and the histogram of the chunk.
 void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
@@ -31,7 +37,10 @@ void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
             const bool inside = (gx >= 1.0F) & (gx < limitX) & (gy >= 1.0F) & (gy < limitY) & (gz >= 1.0F) & (gz < limitZ);
             const bool sample = job.id[i] >= job.firstSample;
             uint32_t cell = total + (sample ? 0U : 1U);
-            if (inside)
+            if (job.repeats && fabsf(gx) < FARTHEST_CELL && fabsf(gy) < FARTHEST_CELL && fabsf(gz) < FARTHEST_CELL)
+                cell = static_cast<uint32_t>((cellOnce(gz, job.cellsZ) * job.cellsY + cellOnce(gy, job.cellsY)) * 2 * job.cellsX +
+                                             halfCellOnce(gx, job.cellsX));
+            else if (inside)
                 cell = (static_cast<uint32_t>(static_cast<int>(gz)) * static_cast<uint32_t>(job.cellsY) +
                         static_cast<uint32_t>(static_cast<int>(gy))) *
                            static_cast<uint32_t>(2 * job.cellsX) +
@@ -142,7 +151,7 @@ INLINE float maxLane(const real& r) { return -minLane(-r); }
 // The box around a group's particles.
 struct GroupBox {
     float loX, loY, loZ, hiX, hiY, hiZ;
-    int cy, cz;
+    int cy, cz;  // of all of them
 };
 INLINE GroupBox boxOf(const Job& job, const CpuGroup& group) {
     real px = load8(job.x + group.first), py = load8(job.y + group.first), pz = load8(job.z + group.first);
@@ -153,14 +162,15 @@ INLINE GroupBox boxOf(const Job& job, const CpuGroup& group) {
         py = select(used, py, real(py.v[0]));
         pz = select(used, pz, real(pz.v[0]));
     }
+    const float gy = (py.v[0] - job.originY) * job.scaleY, gz = (pz.v[0] - job.originZ) * job.scaleZ;
     return {minLane(px),
             minLane(py),
             minLane(pz),
             maxLane(px),
             maxLane(py),
             maxLane(pz),
-            static_cast<int>((py.v[0] - job.originY) * job.scaleY),
-            static_cast<int>((pz.v[0] - job.originZ) * job.scaleZ)};
+            job.repeats ? cellOnce(gy, job.cellsY) : static_cast<int>(gy),
+            job.repeats ? cellOnce(gz, job.cellsZ) : static_cast<int>(gz)};
 }
 
 // Largest number of stretches of sorted particles with a group's candidates: nine rows, two pieces where a row wraps, fluid, samples and
@@ -220,6 +230,11 @@ INLINE void findWrapped(const Job& job, const GroupBox& b, uint32_t firstCell, S
     int x0 = static_cast<int>(floor((b.loX - reach - job.originX) * 2.0F * job.scaleX));
     int x1 = static_cast<int>(floor((b.hiX + reach - job.originX) * 2.0F * job.scaleX));
     const int first = 2, last = 2 * job.cellsX - 3, turn = last - first + 1;  // the half cells that are not padding
+    if (job.repeats) {
+        const int from = repeatedCell(x0, first, turn);
+        x1 += from - x0;
+        x0 = from;
+    }
     for (int z = 0; z < nz; ++z)
         for (int y = 0; y < ny; ++y) {
             const uint32_t* row = rowOf(job, firstCell, ys[y], zs[z]);

@@ -35,6 +35,7 @@ struct CpuGridJob {
     uint32_t count;                   // slots to sort: without those of particles that go on sleeping
     uint32_t asleepCells;             // that have particles: cells(), or 0 if nothing sleeps
     bool sortsAsleep;                 // the sleeping particles are sorted too, into cells of their own behind all others
+    bool repeats;                     // cells repeat in space along all axes
     uint32_t chunks;                  // of the two-histogram sort
     uint32_t groupCount;
     uint32_t listCapacity;  // entries

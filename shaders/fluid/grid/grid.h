@@ -4,16 +4,28 @@
 // fluid.sleep the sleeping particles follow (velocity.w negative), in cells of their own, the first of them at totalCells + 3.
 #if !defined(RIVULET_GRID_H)
 #define RIVULET_GRID_H
+#if defined(REPEATS)
+#include "shaders/fluid/grid/repeats.h"
+#endif
 // The cell of `x` (m), x fastest, or cellCount if x is outside the unpadded cells, NaN or infinite. (The cpu's sort has finer cells; there
 // only the test against cellCount is meaningful.) The conditions are true inside, so that NaN, for which every comparison is false,
-// counts as outside.
+// counts as outside. REPEATS: the cells repeat in space, and every finite position has one.
 FN uint cellOf(vec3 x, StepParams p) {
     float gx = (x.x - p.gridOrigin.x) * p.gridScale.x;
     float gy = (x.y - p.gridOrigin.y) * p.gridScale.y;
     float gz = (x.z - p.gridOrigin.z) * p.gridScale.z;
     uint cell = p.cellCount;
+#if defined(REPEATS)
+    if (abs(gx) < FARTHEST_CELL && abs(gy) < FARTHEST_CELL && abs(gz) < FARTHEST_CELL) {
+        int cx = repeatedCell(TO_INT(floor(gx)), 1, p.cellsX - 2);
+        int cy = repeatedCell(TO_INT(floor(gy)), 1, p.cellsY - 2);
+        int cz = repeatedCell(TO_INT(floor(gz)), 1, p.cellsZ - 2);
+        cell = TO_UINT((cz * p.cellsY + cy) * p.cellsX + cx);
+    }
+#else
     if (gx >= 1.0f && gx < TO_FLOAT(p.cellsX - 1) && gy >= 1.0f && gy < TO_FLOAT(p.cellsY - 1) && gz >= 1.0f && gz < TO_FLOAT(p.cellsZ - 1))
         cell = TO_UINT((TO_INT(gz) * p.cellsY + TO_INT(gy)) * p.cellsX + TO_INT(gx));
+#endif
     return cell;
 }
 // The cell that a particle is sorted to. A slot is free if w is negative; else w is the density ratio.

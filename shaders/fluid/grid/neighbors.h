@@ -1,5 +1,5 @@
 // The loop over a particle's neighbours on a GPU: the nine rows of cells around it, each with three cells contiguous in memory; with MATTER
-// also the same rows of body samples, with SLEEP those of sleeping particles; with PERIODIC cell by cell, because rows may wrap around;
+// also the same rows of body samples, with SLEEP those of sleeping particles; with PERIODIC (or REPEATS) cell by cell, as rows may wrap;
 // with LINKED_LIST the lists of the 27 cells. (On the CPU, lang_neighbors.h defines the same macros over a neighbour list for each group
 // of 8.) Needs PARAMS of StepParams and a buffer RO(1, Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart or the lists.
 // `home`: the particle's position when the grid was built. j includes the particle itself.
@@ -39,11 +39,20 @@
 #define SETS_ AWAKE_SETS_
 #define SET_AT_(set) ((set)*TO_INT(PARAMS.cellCount))
 #endif
+#if defined(REPEATS)
+#include "shaders/fluid/grid/repeats.h"
+#define HOME_CELL(home)                                                  \
+    vec3 g_ = (home - PARAMS.gridOrigin.xyz) * PARAMS.gridScale.xyz;     \
+    int cx_ = repeatedCell(TO_INT(floor(g_.x)), 1, PARAMS.cellsX - 2);   \
+    int cy_ = repeatedCell(TO_INT(floor(g_.y)), 1, PARAMS.cellsY - 2);   \
+    int cz_ = repeatedCell(TO_INT(floor(g_.z)), 1, PARAMS.cellsZ - 2);
+#else
 #define HOME_CELL(home)                                              \
     vec3 g_ = (home - PARAMS.gridOrigin.xyz) * PARAMS.gridScale.xyz; \
     int cx_ = TO_INT(g_.x);                                          \
     int cy_ = TO_INT(g_.y);                                          \
     int cz_ = TO_INT(g_.z);
+#endif
 #if defined(LINKED_LIST)
 #define FOR_NEIGHBORS(i, home, j)                                                                                       \
     {                                                                                                                   \

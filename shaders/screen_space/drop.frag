@@ -23,5 +23,6 @@ void main() {
     // A sphere refracts a ray twice by the same angle, towards its centre.
     float turn = 2.0 * (asin(min(d, 1.0)) - asin(min(d, 1.0) / refractiveIndex));
     vec3 bent = -toEye * cos(turn) - outwards * sin(turn);
-    colour = vec4(lightOfDrop(seenThrough(centreView.xyz, bent, depth), n, toEye), cover * share);
+    gl_FragDepth = windowOfDepth(cover > 0.5 ? depth : depthBehind());
+    colour = vec4(lightOfDrop(seenThrough(centreView.xyz, bent, depth, 0.0), n, toEye, 0.0), cover * share);
 }

@@ -15,8 +15,8 @@ bool isHidden(float depth) {
     return depth > depthBehind();
 }
 
-// What a ray that leaves the drop at `from` (m, view) sees, for a drop whose surface has this depth (m). `closed`: share of the surroundings
-// that the scene behind hides beyond the picture's edge.
+// What a ray that leaves the drop at `from` (m, view) sees, for a drop whose surface has this depth (m). `closed`: share of the
+// surroundings that the scene behind hides beyond the picture's edge.
 vec3 seenThrough(vec3 from, vec3 way, float depth, float closed) {
     vec3 met = from + way * clamp(depthBehind() - depth, 0.0, 0.4);
     vec2 uv = pixelOf(met) * frame.viewport.zw;
@@ -33,7 +33,8 @@ vec3 lightOfDrop(vec3 through, vec3 n, vec3 toEye, float closed) {
     float base = (refractiveIndex - 1.0) / (refractiveIndex + 1.0);
     float mirror = mix(base * base, 1.0, pow(1.0 - max(dot(n, toEye), 0.0), 5.0));  // Schlick 1994
     vec3 way = reflect(-toEye, n), mirrored = environment(directionToWorld(way), 0.05);
-    if (closed > 0.0) mirrored = mix(mirrored, texelFetch(sceneColour, ivec2(gl_FragCoord.xy), 0).rgb, closed * smoothstep(0.0, 0.3, -dot(way, toEye)));
+    vec3 behind = texelFetch(sceneColour, ivec2(gl_FragCoord.xy), 0).rgb;
+    if (closed > 0.0) mirrored = mix(mirrored, behind, closed * smoothstep(0.0, 0.3, -dot(way, toEye)));
     vec3 half_ = normalize(toEye + transpose(mat3(frame.inverseView)) * frame.lightDir.xyz);
     float glint = smoothstep(0.975, 0.995, dot(n, half_));
     return mix(through, mirrored, mirror) + frame.lightColour.rgb * (0.6 * glint);

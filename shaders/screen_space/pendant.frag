@@ -108,5 +108,7 @@ void main() {
 
     vec3 n = normalize(outside(p).yzw);
     if (dot(n, sight) > 0.0) n = normalize(n - sight * (dot(n, sight) + 1.0e-3));
-    colour = vec4(lightOfDrop(seenInside(p, refract(sight, n, 1.0 / refractiveIndex), radius, depth), n, -sight, 1.0 - smoothstep(0.1, 0.4, depthBehind() - depth)), cover * drop.axis.w);
+    float closed = 1.0 - smoothstep(0.1, 0.4, depthBehind() - depth);
+    vec3 inside = seenInside(p, refract(sight, n, 1.0 / refractiveIndex), radius, depth);
+    colour = vec4(lightOfDrop(inside, n, -sight, closed), cover * drop.axis.w);
 }

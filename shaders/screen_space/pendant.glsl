@@ -1,5 +1,5 @@
-// A drop that hangs: about its centre line, which leaves the skin along the normal and bends towards the way down, its radius r at the share
-// s of its height is r^2 = (1 - s) (x + y s + z s^2 + w s^3). Above the plane of its foot it goes on, into the skin.
+// A drop that hangs: about its centre line, which leaves the skin along the normal and bends towards the way down, its radius r at the
+// share s of its height is r^2 = (1 - s) (x + y s + z s^2 + w s^3). Above the plane of its foot it goes on, into the skin.
 struct Pendant {
     vec4 foot;        // xyz m, view; w m, its height
     vec4 axis;        // xyz unit, the skin's normal; w opacity

@@ -17,7 +17,8 @@ vec4 outside(vec3 p) {
     float t = min(s, 1.0);  // below the tip it is as at the tip
     float swell = w.x + t * (w.y + t * (w.z + t * w.w)), square = (1.0 - s) * swell;
     float slope = ((1.0 - t) * (w.y + t * (2.0 * w.z + t * 3.0 * w.w)) - swell) / high;
-    if (z < PENDANT_ABOVE * high) slope = 0.0;
+    float above = PENDANT_ABOVE * high - z;
+    if (above > 0.0) slope = 0.0, square = -above * drop.lean.w;  // it ends there
     return vec4(dot(e, e) - square, 2.0 * e - drop.axis.xyz * (slope + 2.0 * dot(e, lean)));
 }
 
@@ -55,10 +56,13 @@ float meets(vec3 from, vec3 way, float reach, int steps, float sign_, out float 
     return f.x < 0.0 ? at : -1.0;
 }
 
-// The skin, where the eye sees it: a little above its place, for it may face away.
+// The skin, where the eye sees it: a little above its place, for it may face away; at its place, where nothing is above.
 vec3 skinAt(vec3 at) {
-    vec2 uv = pixelOf(at - drop.axis.xyz * (0.4 * drop.lean.w)) * frame.viewport.zw;
-    return textureLod(sceneColour, clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw), 0.0).rgb;
+    for (float above = 0.4; ; above = 0.0) {
+        vec2 uv = clamp(pixelOf(at - drop.axis.xyz * (above * drop.lean.w)) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
+        bool there = abs(depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) + at.z) < 10.0 * drop.lean.w;
+        if (there || above == 0.0) return textureLod(sceneColour, uv, 0.0).rgb;
+    }
 }
 
 // What a ray sees that leaves the drop: what climbs meets the skin beside the foot.

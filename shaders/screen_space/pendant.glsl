@@ -11,6 +11,6 @@ struct Pendant {
 ROWS(0, pendants)  // in the world: foot, axis, swell, lean, absorption
 #endif
 const int PENDANT_ROWS = 5;
-const float PENDANT_ABOVE = -0.15;  // of its height: where it ends above the foot
+const float PENDANT_ABOVE = -0.1;  // of its height: where it ends above the foot
 
 vec3 centreLine(Pendant p, float s) { return p.foot.xyz + p.foot.w * (p.axis.xyz * s + p.lean.xyz * (0.5 * s * max(s, 0.0))); }

@@ -143,7 +143,9 @@ DropProfile fitted(const std::vector<Place>& places, double way) {
 }
 
 DropProfile mixed(const DropProfile& a, const DropProfile& b, double t) {
-    return {a.length + t * (b.length - a.length), a.swell + t * (b.swell - a.swell)};
+    DropProfile made{a.length + t * (b.length - a.length), a.swell + t * (b.swell - a.swell)};
+    made.swell *= glm::mix(a.volume(), b.volume(), t) / made.volume();
+    return made;
 }
 
 DropProfile fitted(const Drop& d) { return mixed(fitted(d.from->places, d.foot.way), fitted(d.to->places, d.foot.way), d.between); }

@@ -13,6 +13,47 @@ constexpr float kWet = 0.3F;                                       // density ra
 constexpr float kAlone = 0.5F;                                     // density ratio up to which a particle is no part of the water
 constexpr double kAirDensity = 1.2;                                // kg/m^3
 constexpr double kBallDrag = 0.6;                                  // drag coefficient of a falling drop
+// Of a drop that lets go, in sqrt(density x radius^3 / surface tension): how long its neck takes to break, and how long it is then drawn as
+// it swings. Chosen by eye.
+constexpr double kNeck = 3, kSwings = 3;
+
+double radiusOf(const AirDrop& d) { return std::cbrt(3 * d.picolitres * kPicolitre / (4 * std::numbers::pi)); }
+
+double inertial(const AirDrop& d, const SurfaceFlowParams& p) {
+    return std::sqrt(double{p.density} * std::pow(radiusOf(d), 3) / double{p.surfaceTension});
+}
+
+// `share` of the time until the neck breaks. From what hung to a pear below a cone, r^2 = (1 - s) (s - neck)^2 (a + b s): the pear holds
+// what falls, and the cone's foot becomes narrower.
+HungDrop necking(const AirDrop& d, double share) {
+    constexpr double kPear = 2.4, kFoot = 0.4;  // its length over the radius of its ball; the square of the cone's foot over that before
+    if (share == 0) return *d.hung;             // it does not move yet
+    HungDrop made = *d.hung;
+    const double radius = radiusOf(d);
+    const dvec3 end = d.position + made.down() * (radius * (1 + (kPear - 2) * share)), line = end - made.foot;
+    made.profile.length = std::max(glm::dot(line, made.axis), 0.5 * d.hung->profile.length);
+    made.lean = 2.0 * (line - made.axis * glm::dot(line, made.axis)) / made.profile.length;
+    const double pear = std::min(kPear * radius / made.profile.length, 0.75), neck = 1 - pear, p4 = std::pow(pear, 4);
+    const double a = kFoot * d.hung->profile.swell.x / (neck * neck);
+    const double b = (4 * std::pow(radius, 3) / (3 * made.profile.length) - a * p4 / 12) / (neck * p4 / 12 + pear * p4 / 20);
+    const glm::dvec4 broken(neck * neck * a, neck * neck * b - 2 * neck * a, a - 2 * neck * b, b);
+    made.profile.swell = glm::mix(d.hung->profile.swell, broken, share);
+    return made;
+}
+
+// `time` after that, in inertial(): the pear becomes a ball, and swings at the frequency of Rayleigh 1879, sqrt(8) / (2 pi).
+HungDrop swinging(const AirDrop& d, double time) {
+    constexpr double kCalms = 1.5;
+    HungDrop made = *d.hung;
+    const double radius = radiusOf(d), swing = std::exp(-time / kCalms) * std::cos(std::sqrt(8.0) * time),
+                 pear = swing > 0 ? swing * swing : 0;
+    const double length = 2 * radius * (1 + 0.2 * swing), volume = 4 * std::pow(radius, 3) / (3 * length);
+    made.axis = made.down();
+    made.lean = dvec3(0.0);
+    made.foot = d.position - made.axis * (0.5 * length);
+    made.profile = {length, glm::dvec4(0, 6 * volume * (1 - pear), 12 * volume * pear, 0)};
+    return made;
+}
 
 }  // namespace
 
@@ -89,12 +130,20 @@ Status AirDrops::fall(const Inputs& inputs, double seconds) {
     const double then = inputs.time + seconds, spacing = world != nullptr ? double{world->particles().spacing} : 0.0;
     for (AirDrop& d : drops_) {
         const double density = double{inputs.skins[d.skin]->flow().params().density}, volume = d.picolitres * kPicolitre;
-        const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
+        const double radius = radiusOf(d);
         const dvec3 against = dvec3(inputs.winds[d.skin]) - d.velocity;
         // The drag is implicit: no step length reverses the drop.
         const double drag = 0.5 * kAirDensity * kBallDrag * std::numbers::pi * radius * radius * glm::length(against) / (density * volume);
-        d.velocity += (dvec3(inputs.gravity) + against * drag) * seconds / (1 + drag * seconds);
-        Way way{.to = d.position + d.velocity * seconds, .first = {}, .begin = places.size()};
+        // Its neck holds it at first.
+        double falls = 1;
+        dvec3 off(0.0);
+        if (d.hung) {
+            if (d.age == 0) off = d.hung->tip() - d.hung->down() * radius - d.position;
+            d.age += seconds;
+            falls = std::min(d.age / (kNeck * inertial(d, inputs.skins[d.skin]->flow().params())), 1.0);
+        }
+        d.velocity += (dvec3(inputs.gravity) * falls * falls + against * drag) * seconds / (1 + drag * seconds);
+        Way way{.to = d.position + off + d.velocity * seconds, .first = {}, .begin = places.size()};
         way.first = firstMet(inputs.skins, d.position, way.to, then);
         if (world != nullptr && isFinite(vec3(way.to))) {
             way.count = static_cast<size_t>(std::min(std::ceil(glm::distance(d.position, way.to) / spacing), 64.0));
@@ -126,6 +175,7 @@ Status AirDrops::fall(const Inputs& inputs, double seconds) {
             continue;
         }
         d.position = way.to;
+        if (d.hung && d.age > (kNeck + kSwings) * inertial(d, inputs.skins[d.skin]->flow().params())) d.hung.reset();
         const bool somewhere = std::isfinite(glm::dot(way.to, way.to)) && glm::dot(way.to, way.to) < 1.0e12;
         if (!somewhere || way.to.y < inputs.floor)
             drained_ += d.picolitres;
@@ -146,8 +196,19 @@ Status AirDrops::step(const Inputs& inputs, double seconds) {
 std::vector<vec4> AirDrops::drawn() const {
     std::vector<vec4> all;
     for (const AirDrop& d : drops_) {
-        all.emplace_back(vec3(d.position), static_cast<float>(std::cbrt(3 * d.picolitres * kPicolitre / (4 * std::numbers::pi))));
+        if (d.hung) continue;
+        all.emplace_back(vec3(d.position), static_cast<float>(radiusOf(d)));
         all.emplace_back(vec3(d.velocity), 0.0F);
+    }
+    return all;
+}
+
+std::vector<AirDrops::LetGo> AirDrops::letGo(std::span<PlacedFlow* const> skins) const {
+    std::vector<LetGo> all;
+    for (const AirDrop& d : drops_) {
+        if (!d.hung) continue;
+        const double time = d.age / inertial(d, skins[d.skin]->flow().params());
+        all.push_back({time < kNeck ? necking(d, time / kNeck) : swinging(d, time - kNeck), d.skin});
     }
     return all;
 }

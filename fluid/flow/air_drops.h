@@ -27,7 +27,13 @@ class AirDrops {
     void add(const AirDrop& drop) { drops_.push_back(drop); }
 
     const std::vector<AirDrop>& drops() const { return drops_; }
-    std::vector<vec4> drawn() const;  // as FluidView::drops
+    std::vector<vec4> drawn() const;  // the balls, as FluidView::drops
+    // Those that have let go so lately that they are no balls yet.
+    struct LetGo {
+        HungDrop shape;
+        uint32_t skin = 0;
+    };
+    std::vector<LetGo> letGo(std::span<PlacedFlow* const> skins) const;
     // Picolitres since the start, `air` now.
     struct Counts {
         uint64_t air = 0, drained = 0;   // drained: on the ground, or lost from sight

@@ -1,6 +1,10 @@
 #include "fluid/flow/placed_flow.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "shaders/flow/flow_step.h"
 
 namespace rivulet {
 
@@ -40,6 +44,36 @@ void PlacedFlow::land(const SkinSearch::Hit& where, const AirDrop& drop) {
     constexpr float kMost = 0.2F;  // m/s
     if (const float speed = glm::length(v); speed > kMost) v *= kMost / speed;
     flow_->add(where.at, drop.picolitres, v);
+}
+
+HungDrop PlacedFlow::hung(const HangingDrop& drop) const {
+    constexpr double kMostLean = 1.2, kPicolitre = 1.0e-15;
+    const SurfaceFlowParams& p = flow_->params();
+    const glm::dmat3 turn(toWorld_);
+    const dvec3 up = glm::normalize(dvec3(drop.up)), pull(drop.pull);
+    const double away = std::max(glm::dot(pull, up), 1.0e-3);
+    const double l = std::sqrt(double{p.surfaceTension} / (double{p.density} * away));
+    const double curvature = std::max(double{drop.curvature}, 0.0);
+    HungDrop made;
+    made.profile = flow_->pendant()->profile(curvature * l, drop.picolitres * kPicolitre / (l * l * l));
+    made.profile.length *= l;
+    made.profile.swell *= l * l;
+    dvec3 lean = pull / away - up;
+    if (const double much = glm::length(lean); much > kMostLean) lean *= kMostLean / much;
+    // The skin, a ball, comes through the plane of the foot by this much.
+    const double bent = std::min(curvature * std::sqrt(made.profile.square(0)), 1.0);
+    const double through = curvature > 0 ? (1 - std::sqrt(1 - bent * bent)) / curvature : 0.0;
+    made.foot = dvec3(toWorld_ * glm::dvec4(dvec3(drop.position) - through * up, 1));
+    made.axis = turn * up;
+    made.lean = turn * lean;
+    made.opacity = std::clamp(double{(drop.share - HANGS_FROM) / (HANGS_FULLY - HANGS_FROM)}, 0.0, 1.0);
+    return made;
+}
+
+std::vector<HungDrop> PlacedFlow::hanging() const {
+    std::vector<HungDrop> all;
+    for (const HangingDrop& drop : flow_->hanging()) all.push_back(hung(drop));
+    return all;
 }
 
 Bounds PlacedFlow::bounds() const {

@@ -10,11 +10,24 @@
 
 namespace rivulet {
 
+// A drop that hangs, in the world: about its centre line, which leaves the skin along `axis` and leans by `lean` times its length at the
+// tip.
+struct HungDrop {
+    dvec3 foot{0.0}, axis{0.0}, lean{0.0};  // m, of the middle of the plane of its foot; unit; 1
+    DropProfile profile;                    // m, along the axis
+    double opacity = 1;
+
+    dvec3 tip() const { return foot + profile.length * (axis + 0.5 * lean); }
+    dvec3 down() const { return glm::normalize(axis + lean); }  // at the tip
+};
+
 // A drop in the air: a ball.
 struct AirDrop {
     dvec3 position{0.0}, velocity{0.0};  // m, m/s, in the world
     uint32_t picolitres = 0;
-    uint32_t skin = 0;  // index of the skin that it left: it has that skin's liquid and wind
+    uint32_t skin = 0;                  // index of the skin that it left: it has that skin's liquid and wind
+    std::optional<HungDrop> hung = {};  // that let go: what it was, `age` before
+    double age = 0;                     // s
 };
 
 class PlacedFlow {
@@ -34,6 +47,10 @@ class PlacedFlow {
     std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
     // A drop that comes to rest on the skin there.
     void land(const SkinSearch::Hit& where, const AirDrop& drop);
+
+    // A drop that hangs from the skin, where the skin is now. Not in thesis mode.
+    HungDrop hung(const HangingDrop& drop) const;
+    std::vector<HungDrop> hanging() const;  // does not wait; on a GPU some steps late
 
     SurfaceFlow& flow() { return *flow_; }
     const SurfaceFlow& flow() const { return *flow_; }

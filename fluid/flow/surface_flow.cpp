@@ -84,7 +84,14 @@ FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepPa
     f.contactRadius = static_cast<float>(contactRadius(meanAngle(p)));
     f.hold = static_cast<float>(double{p.hold * p.surfaceTension} * (std::cos(receding) - std::cos(advancing)));
     f.drag = static_cast<float>(dragOf(p) * double{p.viscosity});
-    f.adhesion = static_cast<float>(double{p.adhesion * p.surfaceTension} * 3.14159265358979323846 * std::sin(advancing));
+    if (pendant) {
+        const dvec3 hangs = pendant->inverse() / std::max(double{p.adhesion}, 1.0e-6);
+        f.hangs0 = static_cast<float>(hangs.x);
+        f.hangs1 = static_cast<float>(hangs.y);
+        f.hangs2 = static_cast<float>(hangs.z);
+        f.falls0 = static_cast<float>(pendant->falling().x);
+        f.falls1 = static_cast<float>(pendant->falling().y);
+    }
     f.airDrag = static_cast<float>(0.5 * kAirDensity * double{p.airDrag} * 0.4);  // a cap's height is about 0.4 of its width
     f.trail = p.trail;
     f.trailWidth = p.trailWidth;
@@ -153,7 +160,7 @@ void SurfaceFlow::setGrip(std::span<const float> grip) {
     w.device->writeAll<vec4>(w.driven, table);
 }
 
-// On a GPU both arrive some frames later, one after the other.
+// On a GPU all arrive some frames later, one after the other.
 void SurfaceFlow::Impl::takeCounters() {
     device->readLater(counter, counter.bytes(), [to = std::weak_ptr(reports)](std::span<const std::byte> bytes) {
         const std::shared_ptr<Reports> t = to.lock();
@@ -162,6 +169,7 @@ void SurfaceFlow::Impl::takeCounters() {
         t->refused += c[0] + (uint64_t{c[7]} << 16U);
         t->merges += c[1];
         t->leaving = std::min(c[2], MOST_LEFT);
+        t->hang = std::min(c[3], MOST_HANGING);
         t->film = c[6] > 0;
         t->evaporated += c[4];
     });
@@ -172,9 +180,28 @@ void SurfaceFlow::Impl::takeCounters() {
         std::vector<FlowLeft> some(first, first + t->leaving);
         std::sort(some.begin(), some.end(), [](const FlowLeft& a, const FlowLeft& b) { return a.position.w < b.position.w; });
         for (const FlowLeft& l : some) {
-            t->gone.push_back({vec3(l.position), vec3(l.velocity), l.volume, l.triangle});
+            LeftDrop& gone = t->gone.emplace_back(LeftDrop{vec3(l.position), vec3(l.velocity), l.volume, l.triangle, {}});
+            // As it hung in the step before.
+            const auto hung = std::find_if(t->hanging.begin(), t->hanging.end(),
+                                           [&](const HangingDrop& h) { return l.position.w == static_cast<float>(h.id); });
+            if (l.letGo > 0 && hung != t->hanging.end()) gone.hung = *hung;
             t->left += l.volume;
         }
+    });
+    if (thesis) return;
+    device->readLater(hangs, hangs.bytes(), [to = std::weak_ptr(reports)](std::span<const std::byte> bytes) {
+        const std::shared_ptr<Reports> t = to.lock();
+        if (!t) return;
+        const auto* first = reinterpret_cast<const FlowHanging*>(bytes.data());
+        t->hanging.clear();
+        for (const FlowHanging& h : std::span(first, t->hang))
+            t->hanging.push_back({.id = static_cast<uint32_t>(h.position.w),
+                                  .position = vec3(h.position),
+                                  .up = vec3(h.up),
+                                  .pull = vec3(h.pull),
+                                  .curvature = h.up.w,
+                                  .share = h.pull.w,
+                                  .picolitres = h.volume});
     });
 }
 
@@ -224,7 +251,7 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
     if (!moved) return;
     device->run(basis, f, {&skin, &point, &frames}, f.triangles);
     if (thesis) {
-        device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
+        device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven, &point, &curved}, f.places);
         thesis->makeField(forThesis(), f, true);
     }
     moved = false;
@@ -273,6 +300,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     const int parts = w.thesis ? w.thesis->parts(seconds) : w.reports->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
     for (int k = 0; k < parts; ++k) {
         w.setStep(f, s, seconds / parts);
+        f.reports = k + 1 == parts ? 1 : 0;
         if (Status moved = w.thesis ? w.moveThesis(f, s) : w.moveDrops(f, s); !moved) return moved;
         f.turn0 = vec4(1, 0, 0, 0);  // the frame has already turned
         f.turn1 = vec4(0, 1, 0, 0);
@@ -294,6 +322,11 @@ void SurfaceFlow::Impl::setStep(FlowStep& f, StepParams& s, double seconds) cons
     s.gravity = vec4(vec3(f.pull), static_cast<float>(gamma * kPiD * kPiD / (reach * reach)));
     s.stiffness = static_cast<float>(gamma * (1 - std::cos(meanAngle(params) * kRadian)));
     s.spacing = static_cast<float>(reach * kThinnest);
+    if (const double pull = double{glm::length(vec3(f.pull))}; pendant && pull > 0) {
+        // A drop may exceed what hangs, as it lets go then.
+        const double hangs = 1.5 * double{params.adhesion} * pendant->largest(0) * std::pow(gamma / pull, 1.5);
+        s.boxMin = vec4(vec3(f.pull) * static_cast<float>(std::max(hangs - double{params.largestDrop} * kMicrolitre, 0.0) / pull), 0.0F);
+    }
 }
 
 // Finds other skin that drops touch, within the height of the largest drop.
@@ -327,8 +360,8 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
     touchOthers(f, s);
     device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);
-    device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
-    device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
+    device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven, &point, &curved}, f.places);
+    device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion, &counter, &hangs, &curved}, f.count);
     device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &driven, &motion, &lean}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);
     device->run(paint, f, {&drops.id, &skin, &frames, &motion, &film, &drop, &painted}, f.count);
@@ -342,7 +375,7 @@ Status SurfaceFlow::Impl::moveThesis(const FlowStep& step, const StepParams& s) 
     f.trail = 0;
     const Buffer &layout = thesis->skin(), &flat = thesis->flat();
     if (Status pressed = thesis->press(forThesis(), f, s); !pressed) return pressed;
-    device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &motion, &lean}, f.count);
+    device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &driven, &motion, &lean}, f.count);
     device->run(walk, f, {&drops.id, &layout, &flat, &shift, &drop, &motion}, f.count);
     thesis->releaseDrops(forThesis(), f);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
@@ -395,6 +428,10 @@ uint64_t SurfaceFlow::leaving() const {
     return sum;
 }
 
+const std::vector<HangingDrop>& SurfaceFlow::hanging() const { return impl_->reports->hanging; }
+
+const PendantDrop* SurfaceFlow::pendant() const { return impl_->pendant ? &*impl_->pendant : nullptr; }
+
 FlowView SurfaceFlow::view() const {
     const Impl& w = *impl_;
     // Three drops may merge with a fourth at once: a quarter wider than the largest.
@@ -410,6 +447,7 @@ FlowView SurfaceFlow::view() const {
                .velocity = &w.drops.velocity,
                .id = &w.drops.id,
                .lean = &w.lean,
+               .motion = &w.motion,
                .slots = w.count(),
                .largestRadius = std::max({static_cast<float>(contactRadius(meanAngle(w.params)) * std::cbrt(largest)),
                                           static_cast<float>(kFilmRadius) * w.params.filmReach, w.params.brimWidth}),

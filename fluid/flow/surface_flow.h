@@ -4,12 +4,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/compute/device.h"
 #include "engine/core/params.h"
 #include "fluid/flow/flow_mesh.h"
+#include "fluid/flow/pendant_drop.h"
 #include "fluid/flow/thesis_tables.h"
 #include "shaders/fluid/world/step_params.h"
 
@@ -26,9 +28,9 @@ struct SurfaceFlowParams {
     float unevenness = 0.0F;         // of that force, over the skin: standard deviation over the mean, in spots of 3 and 9 mm
     float drag = 60.0F;              // beta of its viscous drag: beta w eta |v|
     float wallFriction = 0.0F;       // Pa s/m, of the liquid on the skin: with it beta follows from the contact angles, see dragOf()
-    float adhesion = 1.0F;           // share of w gamma sin(advancing) pi that holds a drop under a skin
+    float adhesion = 1.0F;           // factor on the largest volume that hangs under a skin (PendantDrop)
     float airDrag = 1.0F;            // drag coefficient of a drop in the wind
-    float largestDrop = 30.0F;       // microlitres: larger sums stay several drops
+    float largestDrop = 30.0F;       // microlitres: larger sums stay several drops, except where they hang
     float touch = 0.8F;              // of the sum of two drops' radii: at this distance they merge
     float footprint = 2.5e-3F;       // m, over which a drop's weight is spread
     float trail = 1.0e-5F;           // m, thickness of the film that a drop leaves
@@ -83,11 +85,23 @@ struct SkinDrop {
     double film = 0;                      // 0 a drop, 1 part of a film
 };
 
+// A drop that hangs from the skin: one that is too small to sag is none of them.
+struct HangingDrop {
+    uint32_t id = 0;
+    vec3 position{0.0F};  // m, of the middle of its foot, in the skin's frame as all vectors
+    vec3 up{0.0F};        // unit, the skin's mean normal
+    vec3 pull{0.0F};      // m/s^2: gravity, wind and inertia
+    float curvature = 0;  // 1/m, of the skin
+    float share = 0;      // of the largest volume that hangs there
+    uint32_t picolitres = 0;
+};
+
 // A drop that fell off the skin, or ran over an open edge.
 struct LeftDrop {
     vec3 position{0.0F}, velocity{0.0F};  // m, m/s, in the skin's frame; the velocity is the world's
     uint32_t picolitres = 0;
     uint32_t triangle = 0;
+    std::optional<HangingDrop> hung;  // as it hung before, with what stays on the skin
 };
 
 // A flow's memory on its device between two steps, for drawing.
@@ -96,6 +110,7 @@ struct FlowView {
     const Buffer *skin, *point, *basis, *film, *painted;  // as in the kernels of shaders/flow
     const Buffer *cellStart, *position, *velocity, *id;   // drops as last sorted: position.w radius, m; velocity.w volume, m^3
     const Buffer* lean;                                   // by id: see flow/steer
+    const Buffer* motion;                                 // 2 by id: see flow/law
     StepParams grid{};                                    // the grid's part of it
     uint32_t slots = 0;                                   // of drops
     float largestRadius = 0;                              // m, of a drop's foot; wider ones only where several merged at once
@@ -139,6 +154,9 @@ class SurfaceFlow {
     std::vector<LeftDrop> takeLeft();  // since the last call, in the order of ids within each step
     uint64_t leaving() const;          // picolitres that takeLeft() would return; does not wait
     FlowView view() const;
+    // Those of a step that is as late as takeLeft()'s: at most MOST_HANGING of them, in no order. Does not wait.
+    const std::vector<HangingDrop>& hanging() const;
+    const PendantDrop* pendant() const;  // null in thesis mode
     // The film's thickness, m, of every cell of a triangle's lattice; waits.
     std::vector<float> film(uint32_t triangle) const;
     // Picolitres since the start. added = drops + film + left + evaporated + refused.

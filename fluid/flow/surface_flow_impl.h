@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fluid/flow/pendant_drop.h"
 #include "fluid/flow/surface_flow.h"
 #include "fluid/flow/thesis_tables.h"
 #include "fluid/sim/grid/neighbor_grid.h"
@@ -56,29 +57,31 @@ struct SurfaceFlow::Impl : FlowCourse {
     Kernel take, rest, mark, facing, goOver, basis, stand, drive, born, brim, pearl, place, name, merge, law, steer, walk, paint, dry,
         leave;
     PairKernel meet, gather, spread, press;
-    Buffer skin, given, hostMoved, point, frames, driven, wanted, painted, begin, footprint, weight;  // of the mesh
-    Buffer drop, motion, lean;                                                                        // by id
-    Buffer names, sortedOf, side, into, merged, shift, spreads, faces, reached;                       // sorted
-    Buffer chain, spill;                                                                              // of brims
-    Buffer film;                                                                                      // picolitres, of each cell
-    Buffer birth, counter, left;
+    Buffer skin, given, hostMoved, point, frames, driven, curved, wanted, painted, begin, footprint, weight;  // of the mesh
+    Buffer drop, motion, lean;                                                                                // by id
+    Buffer names, sortedOf, side, into, merged, shift, spreads, faces, reached;                               // sorted
+    Buffer chain, spill;                                                                                      // of brims
+    Buffer film;                                                                                              // picolitres, of each cell
+    Buffer birth, counter, left, hangs;
     std::vector<float> uneven;        // of each place: factor of the holding force
     std::vector<uint32_t> firstCell;  // of each triangle's lattice, and the end
     // Counters that the device reports: shared with reads that are still pending.
     struct Reports {
         uint64_t refused = 0, left = 0, evaporated = 0;  // picolitres
         uint64_t merges = 0;
-        uint32_t leaving = 0;  // in the step that is being reported
-        bool film = false;     // a film exists
+        uint32_t leaving = 0, hang = 0;  // in the step that is being reported
+        bool film = false;               // a film exists
         std::vector<LeftDrop> gone;
+        std::vector<HangingDrop> hanging;  // in that step
     };
     std::shared_ptr<Reports> reports = std::make_shared<Reports>();
     Bounds corners;  // m, of the skin at rest
     uint32_t brims = 0, brimPlaces = 0;
     std::vector<uint32_t> placesOf;      // of each brim: how many
     std::optional<ThesisTables> thesis;  // of thesis mode
+    std::optional<PendantDrop> pendant;  // of the others
     // Buffers that change from step to step, besides those that are sorted.
-    auto remembered() { return std::array{&drop, &motion, &lean, &film, &painted, &point, &driven}; }
+    auto remembered() { return std::array{&drop, &motion, &lean, &film, &painted, &point, &driven, &curved}; }
 
     uint32_t count() const { return drops.count; }
     Status prepare(Device& on, std::span<const SkinBrim> along);

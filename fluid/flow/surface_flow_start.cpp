@@ -30,9 +30,11 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({"wallFriction", "Pa s/m",
              "friction of the liquid on the skin; with it drag is ignored and follows from the contact angles; 0 = drag", 0, 1.0e9},
             wallFriction);
-    v.value({"adhesion", "", "factor on the force that keeps a drop on a skin from which it hangs", 0, 10}, adhesion);
+    v.value({"adhesion", "", "factor on the largest volume that hangs under a skin; 1 = that of Young and Laplace's equation", 0, 10},
+            adhesion);
     v.value({"airDrag", "", "drag coefficient of a drop in the wind", 0, 10}, airDrag);
-    v.value({"largestDrop", "ul", "limit on the volume of a drop: drops that would exceed it do not merge", 0.01, 100, kLog, kFixed},
+    v.value({"largestDrop", "ul", "limit on the volume of a drop: drops that would exceed it do not merge, except where they hang", 0.01,
+             100, kLog, kFixed},
             largestDrop);
     v.value({"touch", "", "distance at which two drops merge, over the sum of their radii", 0.1, 1, kLinear, kFixed}, touch);
     v.value({"footprint", "m", "width over which a drop's weight is spread", 0, 0.1, kLinear, kFixed}, footprint);
@@ -80,6 +82,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     for (size_t k = 0; k < mesh.rest.size(); ++k)
         if (Status sound = checkPlace(mesh.given[k], mesh.rest[k]); !sound) return sound;
     device = &on;
+    if (!thesis) pendant.emplace(double{params.advancing}, double{params.receding});
     brims = static_cast<uint32_t>(along.size());
     for (const SkinBrim& b : along) placesOf.push_back(static_cast<uint32_t>(b.places.size()));
     brimPlaces = std::accumulate(placesOf.begin(), placesOf.end(), 0U);
@@ -143,6 +146,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&given, places * sizeof(uint32_t)),
                                  std::pair(&hostMoved, positions * sizeof(vec4)),
                                  std::pair(&driven, 2 * places * sizeof(vec4)),
+                                 std::pair(&curved, places * sizeof(float)),
                                  std::pair(&wanted, places * sizeof(uint32_t)),
                                  std::pair(&painted, triangles * sizeof(uint32_t)),
                                  std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
@@ -164,7 +168,8 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&shift, n * sizeof(vec4)),
                                  std::pair(&birth, n * sizeof(FlowBirth)),
                                  std::pair(&counter, FLOW_COUNTERS * sizeof(uint32_t)),
-                                 std::pair(&left, MOST_LEFT * sizeof(FlowLeft))}) {
+                                 std::pair(&left, MOST_LEFT * sizeof(FlowLeft)),
+                                 std::pair(&hangs, MOST_HANGING * sizeof(FlowHanging))}) {
         Result<Buffer> room = on.allocate(bytes);
         if (!room) return room.error();
         *buffer = std::move(*room);

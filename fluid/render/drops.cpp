@@ -1,4 +1,4 @@
-// Drops in the air, each by itself.
+// Drops in the air and drops that hang, each by itself.
 #include "fluid/render/renderers.h"
 
 namespace rivulet {
@@ -9,29 +9,43 @@ constexpr float kShutter = 1.0F / 250;  // s: what falls fast is drawn out, as o
 
 }  // namespace
 
-void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
+gpu::TextureHandle addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
     using gpu::Usage;
-    if (d.fluid.dropCount == 0) return;
+    const FluidView fluid = d.fluid;
+    if (fluid.dropCount == 0 && fluid.pendantCount == 0) return d.depth;
     const gpu::TextureHandle behind = graph.texture("behind drops", graph.desc(layers.colour));
     copyTexels(graph, "copy scene", layers.colour, behind);
-    const gpu::BufferHandle drops = graph.importBuffer("drops", d.fluid.drops, size_t{d.fluid.dropCount} * 2 * sizeof(vec4));
-    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {drops, Usage::sampled}, behind, d.depth};
+    const gpu::TextureHandle depth = graph.texture("depth with drops", graph.desc(d.depth));
+    copyTexels(graph, "copy scene depth", d.depth, depth);
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, behind, d.depth};
+    if (fluid.dropCount > 0)
+        reads.push_back({graph.importBuffer("drops", fluid.drops, size_t{fluid.dropCount} * 2 * sizeof(vec4)), Usage::sampled});
+    if (fluid.pendantCount > 0)
+        reads.push_back({graph.importBuffer("pendants", fluid.pendants, size_t{fluid.pendantCount} * 5 * sizeof(vec4)), Usage::sampled});
     if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
-    graph.pass("drops", reads, {layers.colour}, [=, &programs](gpu::PassContext& c) {
-        c.drawTo({layers.colour});
+    graph.pass("drops", reads, {layers.colour, depth}, [=, &programs](gpu::PassContext& c) {
+        c.drawTo({layers.colour}, depth);
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_ALWAYS);  // the shaders compare
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         glEnable(GL_BLEND);
         glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-        gpu::Program& p = programs[layers.fluidDepth ? "drops over water" : "drops"];
-        p.use();
-        p.set("shutter", kShutter);
-        p.set("refractiveIndex", d.look.refractiveIndex);
-        p.texture("sceneColour", 0, c.texture(behind));
-        p.texture("sceneDepth", 1, c.texture(d.depth));
-        if (layers.fluidDepth) p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
-        const QuadRows rows[] = {{d.fluid.drops}};
-        programs.drawQuads(p, {0, d.fluid.dropCount}, rows);
+        const auto draw = [&](const char* alone, const char* overWater, unsigned buffer, uint32_t count) {
+            if (count == 0) return;
+            gpu::Program& p = programs[layers.fluidDepth ? overWater : alone];
+            p.use();
+            if (buffer == fluid.drops) p.set("shutter", kShutter);
+            p.set("refractiveIndex", d.look.refractiveIndex);
+            p.texture("sceneColour", 0, c.texture(behind));
+            p.texture("sceneDepth", 1, c.texture(d.depth));
+            if (layers.fluidDepth) p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
+            const QuadRows rows[] = {{buffer}};
+            programs.drawQuads(p, {0, count}, rows);
+        };
+        draw("drops", "drops over water", fluid.drops, fluid.dropCount);
+        draw("pendants", "pendants over water", fluid.pendants, fluid.pendantCount);
     });
+    return depth;
 }
 
 }  // namespace rivulet

@@ -24,6 +24,8 @@ constexpr ProgramRow kShared[] = {
     {"spray, ink", "screen_space/spray.vert", "screen_space/spray.frag", {"INK"}},
     {"drops", "screen_space/drop.vert", "screen_space/drop.frag"},
     {"drops over water", "screen_space/drop.vert", "screen_space/drop.frag", {"OVER_WATER"}},
+    {"pendants", "screen_space/pendant.vert", "screen_space/pendant.frag"},
+    {"pendants over water", "screen_space/pendant.vert", "screen_space/pendant.frag", {"OVER_WATER"}},
     {"foam", "screen_space/foam.vert", "screen_space/foam.frag"},
     {"foam over water", "screen_space/foam.vert", "screen_space/foam.frag", {"OVER_WATER"}},
 };
@@ -116,7 +118,8 @@ Status FluidPrograms::fits(const FluidView& fluid) const {
     };
     for (const Rows& rows : {Rows{fluid.count, 1, "particles", "a larger fluid.spacing or a smaller fluid.maxParticles"},
                              Rows{fluid.foamCount, 1, "flecks of foam", "a smaller fluid.foam.most"},
-                             Rows{fluid.dropCount, 2, "drops in the air", "fewer drops on skins"}})
+                             Rows{fluid.dropCount, 2, "drops in the air", "fewer drops on skins"},
+                             Rows{fluid.pendantCount, 5, "drops that hang", "fewer drops on skins"}})
         if (rows.count > mostTexels / rows.texelsEach)
             return failed(fmt::format("{} {} are more than the {} that this GPU can draw: ask for {}, or run without pictures", rows.count,
                                       rows.what, mostTexels / rows.texelsEach, rows.fewer));

@@ -62,7 +62,7 @@ void FluidUpload::dropTargets() {
 }
 
 size_t FluidUpload::bytes() const {
-    size_t sum = ring_.bytes() + drops_.bytes() + wetCells_.bytes();
+    size_t sum = ring_.bytes() + drops_.bytes() + pendants_.bytes() + wetCells_.bytes();
     for (const Target* to :
          {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &wetness_, &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
         sum += to->memory.bytes();
@@ -86,7 +86,8 @@ void FluidUpload::follow(std::shared_ptr<const GlSharing> sharing) {
     refused_.clear();
 }
 
-Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops) {
+Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops,
+                                    std::span<const vec4> pendants) {
     const double start = hostSeconds();
     const ParticleView particles = world.particles();
     Device& device = world.device();
@@ -110,6 +111,12 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         if (Status s = makeRoom(drops_, drops.size_bytes()); !s) return s.error();
         drops_.writeAll(drops);
         out.drops = drops_.name();
+    }
+    out.pendantCount = static_cast<uint32_t>(pendants.size() / 5);
+    if (out.pendantCount > 0) {
+        if (Status s = makeRoom(pendants_, pendants.size_bytes()); !s) return s.error();
+        pendants_.writeAll(pendants);
+        out.pendants = pendants_.name();
     }
     out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
     // The shader of the points reads normals in place of velocities. Before the first step there are no normals.

@@ -30,8 +30,9 @@ std::string sentenceOf(const TransferFacts& facts);  // "ring: 0.31 ms, 1.2 MB (
 class FluidUpload {
   public:
     // Valid until the next view() and until the world's next step. Error (failed): out of GPU memory.
-    // `drops`: those in the air, as FluidView::drops has them.
-    Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {});
+    // `drops`: those in the air, `pendants`: those that hang, as FluidView has them.
+    Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {},
+                           std::span<const vec4> pendants = {});
     // The same for a recorded frame.
     Result<FluidView> view(const RecordedFrame& frame, const FluidLookParams& look);
     size_t bytes() const;                                   // of OpenGL memory that it holds
@@ -70,7 +71,7 @@ class FluidUpload {
     Status bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out);
 
     gpu::StagingRing ring_;
-    gpu::Buffer drops_;
+    gpu::Buffer drops_, pendants_;
     Target position_, velocity_, id_, absorption_;
     std::array<Target, 2> foam_;
     Target wetness_;

@@ -43,6 +43,9 @@ struct FluidView {
     // Drops in the air: GL buffer name, two vec4 per drop: xyz position, m, w radius, m; xyz velocity, m/s.
     unsigned drops = 0;
     uint32_t dropCount = 0;
+    // Drops that hang or have just let go: GL buffer name, five vec4 per drop, as shaders/screen_space/pendant.glsl has them, in the world.
+    unsigned pendants = 0;
+    uint32_t pendantCount = 0;
     Bounds bounds;  // m, world: the box of the water, which is cut there and casts a shadow from there; empty: no cut, no shadow
 };
 

@@ -101,8 +101,8 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
 // Draws particles that have left the body of the water into layers.colour, as droplets.
 void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
-// Draws the drops in the air into layers.colour.
-void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
+// Draws the drops in the air, and those that hang, into layers.colour. The result is the scene's depth with theirs in it.
+gpu::TextureHandle addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
 // The volume of a particle divided by that of its drawn sphere: turns lengths within spheres into lengths within water.
 float volumeScale(const FluidView& fluid);

@@ -140,7 +140,7 @@ Result<std::unique_ptr<WaterRenderer>> WaterRenderer::create(const WaterRenderer
 Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
                            const RendererRow* row) {
     if (Status fits = impl_->fluid.fits(fluid); !fits) return fits;
-    if (fluid.count == 0 && fluid.foamCount == 0 && fluid.dropCount == 0) return ok();
+    if (fluid.count == 0 && fluid.foamCount == 0 && fluid.dropCount == 0 && fluid.pendantCount == 0) return ok();
     if (Status can = HostPicture::nothingUnderWay(); !can) return can;
     const HostDepth depth = HostDepth::current();
     const gpu::HostState keep;

@@ -381,8 +381,11 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
     lookIntoLids();
     if (flow_->refused() > 0)
         noticeOnce("a skin has no free drop slots: further drops are discarded and counted as drained; raise flow.liquid.capacity");
-    for (const LeftDrop& d : flow_->takeLeft())
-        air.push_back({dvec3(toWorld * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld) * dvec3(d.velocity), d.picolitres});
+    for (const LeftDrop& d : flow_->takeLeft()) {
+        AirDrop& drop = air.emplace_back(
+            AirDrop{dvec3(toWorld * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld) * dvec3(d.velocity), d.picolitres});
+        if (d.hung) drop.hung = placed_->hung(*d.hung);
+    }
     return ok();
 }
 

@@ -38,6 +38,7 @@ class SkinFlows {
     void ledgerLater(const std::function<void(const Ledger&)>& then) const;
     size_t inAir() const { return air_.drops().size(); }
     std::vector<vec4> airDrops() const { return air_.drawn(); }  // as FluidView::drops
+    std::vector<vec4> pendants() const;                          // as FluidView::pendants
     // m^3 that skins may pour into the world in `seconds`, for Sources::expectedDeposit. 0: the scene has no skins or no water.
     static double expectedDeposit(const SceneFile& scene, double seconds);
 

@@ -96,7 +96,7 @@ Result<FluidView> viewOf(FluidUpload& upload, const Session& session) {
         shown->viscosity = session.world().particles().viscosity;  // the world's start has the liquids of the scene
         return shown;
     }
-    return upload.view(session.world(), session.scene().look, session.flows().airDrops());
+    return upload.view(session.world(), session.scene().look, session.flows().airDrops(), session.flows().pendants());
 }
 
 Result<Replay> Replay::open(const std::string& path, const SceneFile& scene, const Log& log) {

@@ -315,10 +315,12 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
             if (whole && d.glassDepth) addFoam(graph, fluid_, d, {colour, fluidDepth}, FoamSide::glazed);
             glass(colour, d.depth, fluidDepth, GlassSide::behind);
         };
+    gpu::TextureHandle seen = draw.depth;  // with drops
     const auto addRest = [&](const FluidDraw& d, const FluidLayers& of) {
         if (!whole) return;
         addFoam(graph, fluid_, d, of, of.fluidDepth && d.glassDepth ? FoamSide::rest : FoamSide::all);
-        addDrops(graph, fluid_, d, of);
+        const gpu::TextureHandle with = addDrops(graph, fluid_, d, of);
+        if (&d == &draw) seen = with;
         glass(of.colour, d.depth, of.fluidDepth, GlassSide::before);
     };
     FluidLayers layers = row->add(graph, fluid_, draw);
@@ -338,7 +340,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
                     .aperture = camera.aperture,
                     .focus = camera.focus > 0 ? camera.focus : atTarget,
                     .automatic = camera.focus <= 0};
-    layers.colour = addDepthOfField(graph, lens_, frame, view, lens, layers.colour, draw.depth, layers.fluidDepth);
+    layers.colour = addDepthOfField(graph, lens_, frame, view, lens, layers.colour, seen, layers.fluidDepth);
     layers.colour = addBloom(graph, lens_, lens, layers.colour);
     const gpu::TextureHandle picture = graph.importTexture("picture", picture_);
     addTonemap(graph, render_, frame, view, layers.colour, picture, lens.exposure);

@@ -41,7 +41,11 @@ STRUCT(FlowStep) {
     float contactRadius;  // radius of a drop's foot over the cube root of its volume
     float hold;           // N/m: times a drop's width: the retention force (contact angle hysteresis)
     float drag;           // Pa s: times its width and speed: the drag force
-    float adhesion;       // N/m: times its width: the force that holds it on a skin from below
+    float hangs0;         // 1 / the largest volume that hangs under a skin, over the cube of the capillary length l: hangs0 + hangs1 b +
+    float hangs1;         // hangs2 b^2, where b is l over the radius of the skin, 0 to 1 (fluid/flow/pendant_drop.h)
+    float hangs2;
+    float falls0;         // share of a drop that falls when it lets go: falls0 + falls1 b
+    float falls1;
     float airDrag;        // kg/m^3: times the squares of its width and of the air's speed: the force of the wind
     float trail;          // m, thickness of the film that a drop leaves; 0: none
     float trailWidth;     // share of a drop's width
@@ -67,9 +71,9 @@ STRUCT(FlowStep) {
     uint number;       // number of this step, from 1
     uint everywhere;   // 1: flow/drive is needed at every place
     float pearlPace;   // m/s: a faster drop sheds small ones
+    uint reports;      // 1: flow/law reports the drops that hang
     uint unused1;
     uint unused2;
-    uint unused3;
 };
 STRUCT(FlowBirth) {
     vec4 velocity;  // m/s, along the triangle; w: 1 part of a film, 0 a drop
@@ -83,13 +87,27 @@ STRUCT(FlowLeft) {
     vec4 velocity;  // m/s
     uint volume;    // picolitres
     uint triangle;  // its last triangle
+    uint letGo;     // 1: it hung; 0: it ran over an edge
+    uint spare0;
+};
+// A drop that hangs from the skin.
+STRUCT(FlowHanging) {
+    vec4 position;  // xyz m; w: its slot
+    vec4 up;        // xyz unit, the skin's mean normal; w 1/m, the skin's curvature
+    vec4 pull;      // xyz m/s^2, what pulls at it; w: its share of the largest volume there
+    uint volume;    // picolitres
     uint spare0;
     uint spare1;
+    uint spare2;
 };
 CONSTANT(float, CORNER_LEAVES, 0.125f);  // share of the cube of the receding angle where a drop's back becomes a corner: at half the angle
 CONSTANT(uint, PEARL_SHARE, 512u);  // volumes of a drop that it sheds in that of the drop: an eighth as wide
 CONSTANT(uint, MOST_LEFT, 256u);  // in a step; the others wait for the next
-CONSTANT(uint, FLOW_COUNTERS, 8u);  // see born, merge, leave, dry
+CONSTANT(uint, MOST_HANGING, 256u);  // that are reported and drawn as such: the others are drawn as caps
+CONSTANT(uint, FLOW_COUNTERS, 8u);  // see born, merge, leave, law, dry
+// A drop is drawn as a cap up to the first share of the largest volume that hangs there, and from the second on as one that hangs.
+CONSTANT(float, HANGS_FROM, 0.06f);
+CONSTANT(float, HANGS_FULLY, 0.2f);
 // Not of the language: a positive number's cube root, to rounding (Newton, from a guess by its bits).
 #if !defined(__cplusplus) || defined(RIVULET_KERNEL_UNIT)
 FN float cubeRoot(float v) {
@@ -100,7 +118,7 @@ FN float cubeRoot(float v) {
 }
 #endif
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
-static_assert(sizeof(FlowStep) % 16 == 0 && sizeof(FlowBirth) == 32 && sizeof(FlowLeft) == 48);
+static_assert(sizeof(FlowStep) % 16 == 0 && sizeof(FlowBirth) == 32 && sizeof(FlowLeft) == 48 && sizeof(FlowHanging) == 64);
 }  // namespace rivulet
 #include "shaders/common/lang_end.h"
 #endif

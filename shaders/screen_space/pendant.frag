@@ -79,7 +79,7 @@ vec3 seenInside(vec3 from, vec3 way, float radius, float depth) {
     for (int k = 0; k < 2; ++k) {
         float unused, short_ = 0.02 * radius;
         float deep = max(meets(from + way * short_, way, 2.5 * radius, 24, -1.0, unused), 0.0) + short_;
-        float climbs = -dot(way, drop.axis.xyz), skin = dot(from - drop.foot.xyz, drop.axis.xyz) / max(climbs, 1.0e-4);
+        float climbs = -dot(way, drop.axis.xyz), skin = max(dot(from - drop.foot.xyz, drop.axis.xyz), 0.0) / max(climbs, 1.0e-4);
         if (climbs > 0.0 && skin < deep) return skinAt(from + way * skin) * clear * exp(-drop.absorption * skin);
         clear *= exp(-drop.absorption * deep);
         from += way * deep;

@@ -22,6 +22,7 @@ struct FlowMaps::Impl {
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
     Buffer box, cap, film, near, stamp, map, reached;
     uint32_t tiles = 0, pieces = 0;
+    bool hangsApart = false;
     bool whole = false;  // tiles are drawn by one thread each, with mips 2 and 3
     uint32_t drawn = 0;
     uint64_t moved = 0;    // FlowView::moved when the boxes were made
@@ -116,6 +117,7 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.trail = std::max(params.trail, 1.0e-6F);
     s.tap = 0.6F * params.filmCell;
     s.contactRadius = static_cast<float>(contactRadius(meanAngle(params)));
+    s.hangsApart = hangsApart ? 1.0F : 0.0F;
     s.receding = glm::radians(std::max(std::min(params.receding, params.advancing), 10.0F));
     s.advancing = std::max(glm::radians(params.advancing), s.receding);
     s.inverseCorner = static_cast<float>(1 / cornerSpeed(params));
@@ -156,6 +158,8 @@ Result<FlowMaps> FlowMaps::create(const SurfaceFlow& flow, std::span<const vec2>
     if (Status ready = impl->prepare(view, flow.params(), made); !ready) return ready.error();
     return FlowMaps(std::move(impl));
 }
+
+void FlowMaps::leaveOutHanging(bool leaveOut) { impl_->hangsApart = leaveOut; }
 
 void FlowMaps::draw(const SurfaceFlow& flow) {
     Impl& w = *impl_;

@@ -28,6 +28,10 @@ class FlowMaps {
     // step nothing is drawn. Does not wait.
     void draw(const SurfaceFlow& flow);
 
+    // Where SurfaceFlow::hanging() is drawn apart, its drops can be left out: their feet remain, wet. By default they are caps as all
+    // others.
+    void leaveOutHanging(bool leaveOut);
+
     Device& device() const;
     int size() const;
     int mips() const;  // down to 1 x 1

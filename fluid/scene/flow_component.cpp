@@ -265,6 +265,7 @@ Status FlowComponent::prepareFlow(const Mesh& skin) {
     Result<FlowMaps> maps = FlowMaps::create(*flow_, std::exchange(uvs_, {}), params_.mapSize);
     if (!maps) return badInput(fmt::format("{}: {}", params_.mesh, maps.error().message));
     maps_.emplace(std::move(*maps));
+    maps_->leaveOutHanging(true);  // a scene draws them with SkinFlows::pendants()
     return ok();
 }
 

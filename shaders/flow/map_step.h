@@ -81,6 +81,10 @@ STRUCT(FlowMapStep) {
     uint coverFrom;       // texels before those whose cover flow/map_mips stores
     float advancing;      // rad, contact angles
     float receding;
+    float hangsApart;  // 1: drops that hang are drawn as such elsewhere, and only their feet here
+    uint unused1;
+    uint unused2;
+    uint unused3;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FlowMapStep) % 16 == 0);

@@ -202,6 +202,28 @@ TEST(FlowMaps, SlopesAreThoseOfTheHeights) {
     EXPECT_LT(worst, 0.02);  // of a cap's steepest slope; half floats resolve 0.1 % of the height
 }
 
+// A drop that hangs is a cap like others, or, where it is drawn apart, a wet foot without height.
+TEST(FlowMaps, AHangingDropIsLeftOutWhereItIsDrawnApart) {
+    Skin skin;
+    addSheet(skin, vec3(0, 0, 0), vec3(0.03F, 0, 0), vec3(0, 0, 0.03F), 7, vec2(0.0F), vec2(1, 0), vec2(0, 1));  // it faces down
+    for (const bool apart : {false, true}) {
+        SurfaceFlowParams p = still();
+        p.largestDrop = 100;
+        Drawn d(skin, 256, p);
+        d.maps->leaveOutHanging(apart);
+        d.flow->add(nearestPoint(d.flow->mesh(), vec3(0.015F, 0, 0.015F)), 60 * kMicrolitre);
+        for (int k = 0; k < 6; ++k) EXPECT_TRUE(d.flow->step({}, 1.0 / 60));
+        EXPECT_EQ(d.flow->hanging().size(), 1U);
+        d.maps->draw(*d.flow);
+        if (apart) EXPECT_LT(d.drawnVolume(), 0.01 * 60e-9);
+        if (!apart) EXPECT_NEAR(d.drawnVolume() / 60e-9, 1, 0.01);
+        double wet = 0;
+        const std::vector<vec4> texels = d.texels();
+        for (const Drawn::Place& at : d.places()) wet += texels[at.at].w > 0.9F ? at.area : 0;
+        EXPECT_GT(wet, 5.0e-5) << "m^2, its foot";
+    }
+}
+
 // A drop at rest, slow, and near the speed at which its rear becomes a corner: it is longer, round in front and elongated behind. Its mass
 // and centre stay the same, and slopes match heights.
 TEST(FlowMaps, ARunningDropIsElongatedBehind) {

@@ -65,7 +65,7 @@ TEST(SceneFlow, AClickPutsADropOnTheSkin) {
     (*session)->step(1.0 / 60, true);
     size_t there = 0;
     for (const SkinDrop& d : flows.skins()[0]->flow().drops())
-        if (d.volume > 5e-9) {
+        if (d.volume > 6e-9) {
             ++there;
             EXPECT_LT(glm::distance(d.position, vec3(0.03F, -0.021F, d.position.z)), 0.004F);
             EXPECT_GT(d.position.z, 0.02F);

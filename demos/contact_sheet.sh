@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
 # A sheet of the crying face: front, three-quarter, from the side and macro, drawn at 1920x1080; dry in the first column, then at five moments.
 #   bash demos/contact_sheet.sh SHEET.jpg [--preset NAME] [SECOND SECOND SECOND SECOND SECOND] [-- further arguments of `rivulet run`]
-# The preset is sob; --preset "" is the scene without one.
+# Without --preset the scene is as it opens.
 # Its single pictures are left in the folder SHEET. Needs the built program and ffmpeg.
 set -eu
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 program="${RIVULET:-$root/build/release/bin/rivulet}"
 [[ $# -gt 0 && "$1" == *.jpg ]] || { echo "contact_sheet: name the sheet, a .jpg" >&2; exit 2; }
-sheet="$1" folder="${1%.jpg}" moments=() preset=sob
+sheet="$1" folder="${1%.jpg}" moments=() preset=
 shift
 if [[ "${1:-}" == --preset && $# -gt 1 ]]; then preset="$2"; shift 2; fi
 while [[ $# -gt 0 && "$1" != -- ]]; do moments+=("$1"); shift; done
 [[ $# -eq 0 ]] || shift
-[[ ${#moments[@]} -gt 0 ]] || moments=(1.6 3.1 5 8 12)
+[[ ${#moments[@]} -gt 0 ]] || moments=(3 6 10 14 18)
 [[ ${#moments[@]} -eq 5 ]] || { echo "contact_sheet: give five moments, in seconds" >&2; exit 2; }
 # position, target, field of view
-views=("0,-0.012,0.50 0,-0.006,0.06 27" "0.27,0.0,0.41 0.008,-0.006,0.05 27" "-0.42,0.0,0.20 0,-0.006,0.03 27" "0.07,0,0.30 0.034,0.012,0.06 10.5")
+views=("0,-0.022,0.50 0,-0.018,0.06 30" "0.27,-0.012,0.41 0.008,-0.018,0.05 30" "-0.42,-0.012,0.20 0,-0.018,0.03 30" "0.07,0,0.30 0.034,0.012,0.06 10.5")
 
 draw() {  # OUT, a view, further arguments
     local out="$1"

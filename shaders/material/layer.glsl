@@ -50,8 +50,8 @@ vec3 filmAt(Tangents t, vec2 uv, float lod, inout float wet, out float high) {
     vec4 bead = roughnessAt(t, uv, 5.0e-3), mid = roughnessAt(t, uv, 2.2e-3), pore = roughnessAt(t, uv, 0.7e-3);
     // As it dries, it breaks up. Where all around is wet, nothing pulls at it.
     float loose = mix(1.5, 0.75, smoothstep(0.3, 0.8, wet)) * (1.0 - 0.5 * smoothstep(0.85, 1.0, around));
-    vec4 hold = loose * (0.5 * bead + 0.25 * mid + 0.12 * pore);
-    const float kFrom = 0.36, kTo = 0.72;
+    vec4 hold = loose * (0.62 * bead + 0.3 * mid + 0.12 * pore);
+    const float kFrom = 0.42, kTo = 0.76;
     float x = clamp((around * (1.0 + hold.x) - kFrom) / (kTo - kFrom), 0.0, 1.0);
     float steep = 2.0 * (1.0 - x) / (kTo - kFrom) * (x > 0.0 ? 1.0 : 0.0);
     slope = slope * (1.0 + hold.x) + around * hold.yzw;

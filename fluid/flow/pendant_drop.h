@@ -45,7 +45,8 @@ class PendantDrop {
     dvec2 falling_{0.0};
 };
 
-// The share of 2 pi r (foot) x surface tension that a drop weighs which falls from a tip of this radius; lengths as above.
+// The volume that falls from a tip of this radius: its weight is a share of 2 pi r x surface tension (Harkins and Brown 1919); lengths as
+// above.
 double fallenVolume(double foot);
 
 }  // namespace rivulet

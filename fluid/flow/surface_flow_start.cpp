@@ -23,15 +23,18 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
             receding);
     v.value({"hold", "", "factor on the force that holds a drop; 1 = that of a disc with these angles", 0, 10}, hold);
     v.value({"unevenness", "",
-             "how much that force varies over the skin, in spots of 3 and 9 mm: standard deviation over the mean; drops wander and pause",
+             "how much that force varies over the skin, in spots of 3 and 9 mm: standard deviation over the mean; drops pause, and wander "
+             "if they leave a trail",
              0, 0.5, kLinear, kFixed},
             unevenness);
     v.value({"drag", "", "force that slows a drop, over its width times viscosity times speed", 0, 10000}, drag);
     v.value({"wallFriction", "Pa s/m",
              "friction of the liquid on the skin; with it drag is ignored and follows from the contact angles; 0 = drag", 0, 1.0e9},
             wallFriction);
-    v.value({"adhesion", "", "factor on the largest volume that hangs under a skin; 1 = that of Young and Laplace's equation", 0, 10},
-            adhesion);
+    v.value(
+        {"adhesion", "",
+         "factor on the largest volume that hangs under a skin; 1 = that of Young and Laplace's equation, whose shapes are drawn", 0, 10},
+        adhesion);
     v.value({"airDrag", "", "drag coefficient of a drop in the wind", 0, 10}, airDrag);
     v.value({"largestDrop", "ul", "limit on the volume of a drop: drops that would exceed it do not merge, except where they hang", 0.01,
              100, kLog, kFixed},

@@ -34,8 +34,12 @@ std::optional<vec3> rotationOf(const std::vector<vec3>& rest, const std::vector<
     }
     if (widest < 1.0e-3F * radius * radius) return {};
     const mat3 turn = frameOf(moved[0] - centre, moved[second] - centre) * glm::transpose(frameOf(a, rest[second] - centre));
+    float furthest = 0;
+    for (size_t k = 0; k < rest.size(); ++k) furthest = std::max(furthest, glm::distance(rest[k], moved[k]));
+    const float most =
+        std::min(0.02F * radius, std::max(0.1F * furthest, 1.0e-5F * radius));  // a small motion of a large part is no rotation
     for (size_t k = 0; k < rest.size(); ++k)
-        if (!(glm::distance(centre + turn * (rest[k] - centre), moved[k]) < 0.02F * radius)) return {};
+        if (!(glm::distance(centre + turn * (rest[k] - centre), moved[k]) <= most)) return {};
     const quat q = glm::quat_cast(turn);
     return glm::axis(q) * std::remainder(glm::angle(q), 2 * kPi);
 }

@@ -46,7 +46,7 @@ namespace rivulet {
 #define ANY_EVERY 64u /* and a dry one, for what a drop left that went too fast to be seen in between */
 // A drop as it is drawn, 3 vec4: the ball about its foot, m; xyz along its way, as long as how far off the ball's middle the widest line of
 // its foot is, a share of the radius, w its height m; and how its back narrows, see map_drop.h;
-// in its w a factor with which 1 - t^2 is nowhere less than q.
+// its w times 1 - t^2 is never less than q.
 #define CAP_VECS 3u
 // The film's thickness, two half floats per uint, mm: the offset of a triangle's cells, of which the t-th begins at `first`.
 #define THICK_BEGIN(first, t) (2u * (((first) + (t)) >> 1u))

@@ -48,7 +48,8 @@ void shadeEye(vec2 uv, vec3 n, vec3 toEye, vec3 albedo, vec3 falling, float lit,
     float lids = smoothstep(-0.05, 0.42, at.y), corners = smoothstep(0.42, 0.92, abs(at.x));
     open *= mix(1.0, 0.30, lids) * mix(1.0, 0.3, corners);
     lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));
-    vec3 arriving = white * pow(vec3(lit), vec3(0.7, 0.9, 1.0)) * falling * (0.3183099 * mix(1.0, 0.35, lids) * mix(1.0, 0.7, corners));  // lashes shade what the lid does not
+    float lashes = mix(1.0, 0.35, lids) * mix(1.0, 0.7, corners);  // they shade what the lid does not
+    vec3 arriving = white * pow(vec3(lit), vec3(0.7, 0.9, 1.0)) * falling * (0.3183099 * lashes);
     // The iris: a bowl; the cornea focuses light on the side away from the lamp.
     vec2 away = at.xy / cornea.w;
     float gathered = 0.55 + 1.5 * smoothstep(-0.1, 0.9, -dot(away, normalize(lampEye.xy + 1.0e-4)) * length(lampEye.xy)) * smoothstep(0.25, 0.75, r);

@@ -4,7 +4,7 @@ uniform sampler2D sceneDepth;  // window depth
 uniform sampler2D fluidDepth;  // m
 uniform bool water;
 uniform bool automatic;  // focuses on what is in the middle of the picture
-uniform vec4 lens;       // m, the focal length; pixels m, see below; m, the focus where nothing is in the middle; pixels, the largest radius
+uniform vec4 lens;       // m, the focal length; pixels m, see below; m, the focus if nothing is in the middle; pixels, the largest radius
 flat out vec3 blur;      // pixels: the radius of a disc is |x - y / depth|, at most z
 
 // m: the harmonic mean of the depths in a spot, without the background.

@@ -59,7 +59,8 @@ float meets(vec3 from, vec3 way, float reach, int steps, float sign_, out float 
 // The skin, where the eye sees it: a little above its place, for it may face away; at its place, where nothing is above.
 vec3 skinAt(vec3 at) {
     for (float above = 0.4; ; above = 0.0) {
-        vec2 uv = clamp(pixelOf(at - drop.axis.xyz * (above * drop.lean.w)) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
+        vec2 uv = pixelOf(at - drop.axis.xyz * (above * drop.lean.w)) * frame.viewport.zw;
+        uv = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
         bool there = abs(depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) + at.z) < 10.0 * drop.lean.w;
         if (there || above == 0.0) return textureLod(sceneColour, uv, 0.0).rgb;
     }

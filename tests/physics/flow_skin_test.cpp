@@ -100,7 +100,6 @@ TEST(FlowOnAMovingSkin, ADropWithoutRetentionMovesStraightOverARotatingPlate) {
     EXPECT_LT(glm::distance(world, start), 0.02 * 0.08 * turns) << world.x << ", " << world.z;
 }
 
-// Nusselt 1916: a film 100 micrometres thick runs down a vertical wall at rho g h^2 / (3 mu) = 32.7 mm/s.
 // Two equal skins in one mesh, each a slope, a ceiling and a floor that nearly touch. The second one moves far away from the box that the
 // mesh has at rest: drops there merge, touch facing skin and leave as those on the first.
 TEST(FlowOnAMovingSkin, DropsBehaveTheSameFarFromTheRestPose) {
@@ -163,6 +162,7 @@ TEST(FlowOnAMovingSkin, DropsBehaveTheSameFarFromTheRestPose) {
     }
 }
 
+// Nusselt 1916: a film 100 micrometres thick runs down a vertical wall at rho g h^2 / (3 mu) = 32.7 mm/s.
 TEST(FlowFilm, RunsAtNusseltsSpeed) {
     for (const double jitter : {0.0, 0.3}) {
         auto device = cpu();

@@ -15,7 +15,7 @@ CONSTANT(uint, DROP_SHARE, 4u);  // float bits, 0 a drop, 1 part of a film
 CONSTANT(uint, DROP_UINTS, 5u);
 CONSTANT(uint, DROP_LEFT, 0x80000000u);  // has let go, or run over an edge: the triangle is the last one
 CONSTANT(uint, DROP_FILM, 0x40000000u);  // part of a film: merges with no drop
-CONSTANT(uint, DROP_BRIM, 0x20000000u);  // part of a brim: stays where it is. In a birth: the number is a brim's place, which the volume is added to
+CONSTANT(uint, DROP_BRIM, 0x20000000u);  // part of a brim: stays. In a birth: the number is that of a brim's place, which gets the volume
 CONSTANT(uint, DROP_NEW, 0x10000000u);  // spawned in this step, or what stays of a drop that let go: its velocity is the given one
 CONSTANT(uint, DROP_NUMBER, 0x0FFFFFFFu);
 CONSTANT(uint, SKIN_OPEN, 0xFFFFFFFFu);

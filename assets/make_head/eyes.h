@@ -69,7 +69,7 @@ struct Lash {
     double along = 0;  // 0 at the root, 1 at the tip
 };
 Part makeLashes(const Eye& eye, const Surface& head, std::vector<Lash>& ofVertex);
-// The positions of wet lashes: groups of a few lashes whose tips touch.
+// The positions of wet lashes. They stick together in groups of a few, with their tips touching.
 std::vector<dvec3> clumped(const Part& lashes, const std::vector<Lash>& ofVertex);
 // Droplets held by clumps; `full` becomes each vertex's place when the lid is full, at rest they are too small to see.
 Part makeLashDrops(const Eye& eye, const Part& lashes, const std::vector<Lash>& ofVertex, std::vector<dvec3>& full,

@@ -19,7 +19,7 @@ std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array
 // `wet`: where the vertices are when the lid is full, see clumped().
 std::vector<std::vector<dvec3>> lashMorphs(const Part& lashes, const std::vector<Lash>& ofVertex, const Surface& head, const Eye& eye,
                                            const std::vector<std::vector<dvec3>>& skin, const std::vector<dvec3>& wet);
-// The morphs of a part whose vertices move as the given vertices of the skin do.
+// The morphs of a part that follows the skin: each of its vertices moves as the vertex of the skin that is given for it.
 std::vector<std::vector<dvec3>> carriedMorphs(const std::vector<uint32_t>& roots, const std::vector<std::vector<dvec3>>& skin);
 // Of an eyeball or its cornea, which turns about the eye's centre.
 std::vector<std::vector<dvec3>> eyeMorphs(const Part& part, const Eye& eye);

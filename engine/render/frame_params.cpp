@@ -7,7 +7,7 @@
 namespace rivulet {
 namespace {
 
-// Three softboxes, whose directions follow the key light. The two that may light matte surfaces become as bright as that light requires.
+// Three softboxes. Their directions follow the key light. The two that may light matte surfaces become as bright as that light requires.
 void placeSoftboxes(FrameParams& f, const Studio& studio) {
     const vec3 key(f.lightDir), colour(f.lightColour);
     const float flatLength = glm::length(vec2(key.x, key.z));

@@ -19,7 +19,8 @@ struct EyeTurns {
     mat4 at(const vec3& turn) const;
 };
 
-// Takes the targets out of a part whose targets are all rotations about one of `centres`; nothing: a part with others, or none.
+// If all morph targets of the part are rotations about one of `centres`, they are removed from it and returned. Else, or if it has none,
+// nothing is returned and the part stays as it is.
 std::optional<EyeTurns> takeEyeTurns(ModelPart& part, std::span<const vec3> centres);
 
 // The share of a blink's way that each of `morphs` moves the lid, where the blink moves it furthest; the blink's own is 1.

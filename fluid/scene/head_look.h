@@ -24,7 +24,7 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
 // Parts `hair` and `brows` on ribbons (a pair of vertices across each, see Material::strand) become hairs; `teeth` and `tongue` without a
 // picture of occlusion stand in the shade of a mouth.
 Status dressHead(Model& head, const std::string& folder);
-// Of a head without such names whose face was found by its eyeballs: they shine wetly, and a tear line lies along each lower lid. Their
+// For a head without such names, if its face was found by its eyeballs: makes them shine, and adds a tear line along each lower lid. Their
 // pictures stay as the file lays them. Nothing where the head does not stand upright.
 void wetFoundEyes(Model& head, size_t skin, const FoundFace& face);
 

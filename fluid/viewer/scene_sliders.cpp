@@ -13,7 +13,7 @@ namespace rivulet {
 
 namespace {
 
-// Visits all parameters and draws a widget for each whose path is in the list.
+// Visits all parameters. Draws a widget for a parameter if its path is in the list.
 class Sliders final : public ParamVisitor {
   public:
     explicit Sliders(std::vector<std::string> wanted) : wanted_(std::move(wanted)) {}

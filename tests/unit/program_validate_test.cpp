@@ -99,7 +99,7 @@ TEST(ProgramValidate, TheSurfaceIsNearTheReference) {
                             {"dam break, fast: FLIP", 0.004, 0.04, false},
                             {"slow dam break, fine: change beyond the reference's", 0.05, 1, true},
                             {"slow dam break, fine: the same along silhouettes", 0.05, 1, false},
-                            {"slow dam break, fast: change beyond the reference's", 0.05, 1, true},
+                            {"slow dam break, fast: change beyond the reference's", 0.05, 1.12, false},  // a hole in the surface gives 1.19
                             {"still pool, fine, 16 frames: flicker, rms", 0.05, 1, true},
                             {"still pool, fine: change beyond the reference's", 0.001, 0.3, true},
                             // Half of the particles stand for all of them; were it another half each frame, still water would glimmer.

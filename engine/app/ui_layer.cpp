@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "engine/ui/style.h"
 
@@ -32,33 +34,55 @@ UiLayer::~UiLayer() = default;
 
 namespace {
 
-void mapKeys(ImGuiIO& io) {
-    constexpr struct {
-        ImGuiKey_ to;
-        int from;
-    } kKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
-                 {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
-                 {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
-                 {ImGuiKey_UpArrow, GLFW_KEY_UP},
-                 {ImGuiKey_DownArrow, GLFW_KEY_DOWN},
-                 {ImGuiKey_PageUp, GLFW_KEY_PAGE_UP},
-                 {ImGuiKey_PageDown, GLFW_KEY_PAGE_DOWN},
-                 {ImGuiKey_Home, GLFW_KEY_HOME},
-                 {ImGuiKey_End, GLFW_KEY_END},
-                 {ImGuiKey_Insert, GLFW_KEY_INSERT},
-                 {ImGuiKey_Delete, GLFW_KEY_DELETE},
-                 {ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
-                 {ImGuiKey_Space, GLFW_KEY_SPACE},
-                 {ImGuiKey_Enter, GLFW_KEY_ENTER},
-                 {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
-                 {ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
-                 {ImGuiKey_A, GLFW_KEY_A},
-                 {ImGuiKey_C, GLFW_KEY_C},
-                 {ImGuiKey_V, GLFW_KEY_V},
-                 {ImGuiKey_X, GLFW_KEY_X},
-                 {ImGuiKey_Y, GLFW_KEY_Y},
-                 {ImGuiKey_Z, GLFW_KEY_Z}};
-    for (const auto& key : kKeys) io.KeyMap[key.to] = key.from;
+// Dear ImGui's number of a key and GLFW's.
+constexpr std::pair<int, int> kKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
+                                         {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
+                                         {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
+                                         {ImGuiKey_UpArrow, GLFW_KEY_UP},
+                                         {ImGuiKey_DownArrow, GLFW_KEY_DOWN},
+                                         {ImGuiKey_PageUp, GLFW_KEY_PAGE_UP},
+                                         {ImGuiKey_PageDown, GLFW_KEY_PAGE_DOWN},
+                                         {ImGuiKey_Home, GLFW_KEY_HOME},
+                                         {ImGuiKey_End, GLFW_KEY_END},
+                                         {ImGuiKey_Insert, GLFW_KEY_INSERT},
+                                         {ImGuiKey_Delete, GLFW_KEY_DELETE},
+                                         {ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
+                                         {ImGuiKey_Space, GLFW_KEY_SPACE},
+                                         {ImGuiKey_Enter, GLFW_KEY_ENTER},
+                                         {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
+                                         {ImGuiKey_A, GLFW_KEY_A},
+                                         {ImGuiKey_C, GLFW_KEY_C},
+                                         {ImGuiKey_V, GLFW_KEY_V},
+                                         {ImGuiKey_X, GLFW_KEY_X},
+                                         {ImGuiKey_Y, GLFW_KEY_Y},
+                                         {ImGuiKey_Z, GLFW_KEY_Z}};
+
+// The keys that are down in this frame. Dear ImGui takes them as events since 1.89 and as tables before.
+void setKeys(ImGuiIO& io, const std::vector<int>& down) {
+    const auto isDown = [&down](int key) { return std::find(down.begin(), down.end(), key) != down.end(); };
+    const bool control = isDown(GLFW_KEY_LEFT_CONTROL) || isDown(GLFW_KEY_RIGHT_CONTROL);
+    const bool shift = isDown(GLFW_KEY_LEFT_SHIFT) || isDown(GLFW_KEY_RIGHT_SHIFT);
+    const bool alt = isDown(GLFW_KEY_LEFT_ALT) || isDown(GLFW_KEY_RIGHT_ALT);
+    const bool super = isDown(GLFW_KEY_LEFT_SUPER) || isDown(GLFW_KEY_RIGHT_SUPER);
+#if IMGUI_VERSION_NUM >= 18900
+    for (const auto& [to, from] : kKeys) io.AddKeyEvent(static_cast<ImGuiKey>(to), isDown(from));
+    io.AddKeyEvent(ImGuiKey_KeypadEnter, isDown(GLFW_KEY_KP_ENTER));
+    io.AddKeyEvent(ImGuiMod_Ctrl, control);
+    io.AddKeyEvent(ImGuiMod_Shift, shift);
+    io.AddKeyEvent(ImGuiMod_Alt, alt);
+    io.AddKeyEvent(ImGuiMod_Super, super);
+#else
+    for (const auto& [to, from] : kKeys) {
+        io.KeyMap[to] = from;
+        io.KeysDown[from] = isDown(from);
+    }
+    io.KeyMap[ImGuiKey_KeyPadEnter] = GLFW_KEY_KP_ENTER;
+    io.KeysDown[GLFW_KEY_KP_ENTER] = isDown(GLFW_KEY_KP_ENTER);
+    io.KeyCtrl = control;
+    io.KeyShift = shift;
+    io.KeyAlt = alt;
+    io.KeySuper = super;
+#endif
 }
 
 }  // namespace
@@ -71,7 +95,9 @@ Result<UiLayer> UiLayer::create(void* clipboard) {
     io.IniFilename = nullptr;  // nothing is written behind the person's back
     io.LogFilename = nullptr;
     io.ConfigWindowsMoveFromTitleBarOnly = true;  // or a drag beside a slider would move its window
-    mapKeys(io);
+#if IMGUI_VERSION_NUM >= 18900
+    io.ConfigInputTrickleEventQueue = false;  // all keys of a frame act in that frame
+#endif
     if (clipboard != nullptr) {
         io.ClipboardUserData = clipboard;
         io.GetClipboardTextFn = [](void* window) { return glfwGetClipboardString(static_cast<GLFWwindow*>(window)); };
@@ -109,17 +135,9 @@ void UiLayer::begin(const InputEvents& input, double seconds) {
     io.MouseWheelH = input.wheel.x;
     io.MouseWheel = input.wheel.y;
 
-    std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-    auto press = [&io](int key) {
-        if (key >= 0 && key < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[key] = true;
-    };
-    for (int key : input.keysDown) press(key);
-    for (int key : input.keysPressed) press(key);
-    auto either = [&io](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
-    io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
-    io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
-    io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
-    io.KeySuper = either(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+    std::vector<int> down = input.keysDown;
+    down.insert(down.end(), input.keysPressed.begin(), input.keysPressed.end());  // a key pressed and released within a frame counts too
+    setKeys(io, down);
     io.AddInputCharactersUTF8(input.text.c_str());
 
     ImGui_ImplOpenGL3_NewFrame();

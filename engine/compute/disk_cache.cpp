@@ -63,9 +63,10 @@ void trimCache(const std::string& folder, std::string_view ending, size_t mostFi
 }
 
 std::string cacheFolder(std::string_view name) {
-    for (const auto& [variable, below] : {std::pair("XDG_CACHE_HOME", "rivulet"), std::pair("HOME", ".cache/rivulet")}) {
+    for (const auto& [variable, below] :
+         {std::pair("XDG_CACHE_HOME", "rivulet"), std::pair("HOME", ".cache/rivulet"), std::pair("LOCALAPPDATA", "rivulet")}) {
         const char* root = std::getenv(variable);
-        if (root != nullptr && root[0] == '/') return (fs::path(root) / below / name).string();
+        if (root != nullptr && fs::path(root).is_absolute()) return (fs::path(root) / below / name).string();
     }
     return {};
 }

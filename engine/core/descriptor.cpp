@@ -1,20 +1,47 @@
 #include "engine/core/descriptor.h"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
 
+#if defined(_WIN32)
+#include <io.h>
+
+#include <filesystem>
+#else
+#include <unistd.h>
+#endif
+
+#include "engine/core/file_system.h"
+
 namespace rivulet {
+
+namespace {
+
+#if defined(_WIN32)
+int openFile(const std::string& path, int flags, unsigned mode) {
+    return ::_wopen(std::filesystem::path(path).c_str(), flags | _O_BINARY | _O_NOINHERIT, static_cast<int>(mode));
+}
+#else
+int openFile(const std::string& path, int flags, unsigned mode) { return ::open(path.c_str(), flags | O_CLOEXEC | O_NOCTTY, mode); }
+#endif
+
+}  // namespace
+
+#if defined(_WIN32)
+const int kNeverWaits = 0;  // a pipe has no name in a folder
+#else
+const int kNeverWaits = O_NONBLOCK;
+#endif
 
 int Descriptor::close() { return fd_ < 0 || ::close(std::exchange(fd_, -1)) == 0 ? 0 : errno; }
 
 Descriptor openDescriptor(const std::string& path, int flags, unsigned mode) {
-    Descriptor file(::open(path.c_str(), flags | O_CLOEXEC, mode));
-    constexpr int kFirst = STDERR_FILENO + 1;
+    Descriptor file(openFile(path, flags, mode));
+    constexpr int kFirst = 3;
     if (file.valid() && file.get() < kFirst) {
-        Descriptor above(::fcntl(file.get(), F_DUPFD_CLOEXEC, kFirst));
+        Descriptor above = duplicateOf(file.get());
         const int error = errno;
         (void)file.close();
         errno = error;
@@ -35,7 +62,9 @@ std::string reasonOf(int error) {
         case ENOTDIR:
             return "a part of its path is not a folder";
         case ENOSPC:
+#if defined(EDQUOT)
         case EDQUOT:
+#endif
             return "the disk is full";
         case EFBIG:
             return "it exceeds the size that the system allows (ulimit -f)";

@@ -1,4 +1,4 @@
-// Descriptor: an open POSIX file, closed by its owner; the system's error numbers in words.
+// Descriptor: an open file, closed by its owner; the system's error numbers in words.
 #pragma once
 
 #include <string>
@@ -28,8 +28,9 @@ class Descriptor {
     int fd_ = -1;
 };
 
-// As open(2), with O_CLOEXEC; not valid: errno says why. Never 0, 1 or 2, even if the process has closed them: text that is printed must
-// not reach a data file.
+// As open(2), not inherited by programs that this process starts, of bytes and not of text; path is UTF-8. Not valid: errno says why. Never
+// 0, 1 or 2, even if the process has closed them: text that is printed must not reach a data file.
+extern const int kNeverWaits;  // a flag: opening a pipe or device does not wait
 Descriptor openDescriptor(const std::string& path, int flags, unsigned mode = 0666);
 
 // "it does not exist", "the disk is full", ...

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,7 @@ class FileWatch {
         bool operator==(const Stamp&) const = default;
     };
     using Stamps = std::map<std::string, Stamp>;
+    static std::optional<Stamp> stampOf(const std::filesystem::path& file);  // nothing: not a regular file
     static void scan(const std::string& path, Stamps& into);
 
     std::map<std::string, Stamps> reference_;  // by watched path

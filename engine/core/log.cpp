@@ -1,6 +1,10 @@
 #include "engine/core/log.h"
 
+#if defined(_WIN32)
+#include <io.h>
+#else
 #include <unistd.h>
+#endif
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +17,7 @@ namespace rivulet {
 Log stderrLog(LogLevel least) {
     return Log{[least](LogLevel level, std::string_view text) {
         if (level < least) return;
-        const char* erase = isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";  // a bar of progress may be there
+        const char* erase = isatty(2) != 0 ? "\r\033[K" : "";  // a bar of progress may be there
         std::fprintf(stderr, "%srivulet: %s\n", erase, messageLine(text).c_str());
     }};
 }

@@ -2,19 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
-#include <cstdlib>
-#include <cstring>
+#include <cstddef>
 #include <filesystem>
 #include <mutex>
 
-#include "engine/core/descriptor.h"
+#include "engine/core/file_system.h"
 
 namespace rivulet {
 
@@ -24,16 +22,16 @@ namespace fs = std::filesystem;
 
 // The names of temporary files. Global, because a signal handler takes no argument.
 using Place = std::atomic<const char*>;
-using Text = std::unique_ptr<char, void (*)(void*)>;
+using Text = std::unique_ptr<char[]>;
 constexpr size_t kMost = 256;  // of those that a signal removes
 std::array<Place, kMost> temporaries = {};
-std::atomic<pid_t> owner = 0;  // of the list: a process that was forked must not remove these files
-std::mutex changing;           // of `owner`, among threads
-static_assert(Place::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
+std::atomic<ProcessId> owner = 0;  // of the list: a process that was forked must not remove these files
+std::mutex changing;               // of `owner`, among threads
+static_assert(Place::is_always_lock_free && std::atomic<ProcessId>::is_always_lock_free);
 
 // Nothing: all places are taken.
 Place* enlist(const char* name) {
-    const pid_t self = ::getpid();
+    const ProcessId self = processId();
     const std::lock_guard lock(changing);
     if (owner.exchange(self) != self)  // a forked process begins anew
         for (Place& place : temporaries) place = nullptr;
@@ -49,30 +47,24 @@ std::string nameBeside(const fs::path& target, int attempt) {
     constexpr size_t kEnd = 100;  // bytes: the whole must not be too long for a name
     std::string end = target.filename().string();
     if (end.size() > kEnd) end.erase(0, end.size() - kEnd);
-    return (target.parent_path() / fmt::format(".rivulet-{}-{}-{}", ::getpid(), attempt, end)).string();
-}
-
-void syncFolderOf(const std::string& path) {  // some file systems cannot: the file is complete all the same
-    const fs::path folder = fs::path(path).parent_path();
-    const Descriptor at = openDescriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY);
-    if (at.valid()) (void)::fsync(at.get());
+    return (target.parent_path() / fmt::format(".rivulet-{}-{}-{}", processId(), attempt, end)).string();
 }
 
 }  // namespace
 
 struct NewFile::Impl {
-    std::string path;                 // as given
-    std::string target;               // its links followed
-    std::string temporary;            // empty: the file has its name
-    Text listed{nullptr, std::free};  // `temporary`, for the signal handler
-    Place* place = nullptr;           // of `listed`
+    std::string path;        // as given
+    std::string target;      // its links followed
+    std::string temporary;   // empty: the file has its name
+    Text listed;             // `temporary`, for the signal handler
+    Place* place = nullptr;  // of `listed`
     Descriptor file;
     bool older = false;  // a file of the name exists
     int error = 0;       // of a write that failed
 
     ~Impl() {
         if (temporary.empty()) return;
-        (void)::unlink(temporary.c_str());
+        removeFile(temporary.c_str());
         forget();
     }
 
@@ -88,22 +80,23 @@ struct NewFile::Impl {
     int create(unsigned mode) {
         for (int attempt = 0;; ++attempt) {
             temporary = nameBeside(target, attempt);
-            listed.reset(::strdup(temporary.c_str()));
-            place = listed ? enlist(listed.get()) : nullptr;
+            listed = std::make_unique<char[]>(temporary.size() + 1);
+            temporary.copy(listed.get(), temporary.size());
+            place = enlist(listed.get());
             file = openDescriptor(temporary, O_WRONLY | O_CREAT | O_EXCL, mode);
             if (file.valid()) break;
             const int failure = errno;
             forget();
             if (failure != EEXIST) return failure;
         }
-        if (older) (void)::fchmod(file.get(), mode);
+        if (older) (void)setMode(file, mode);
         return 0;
     }
 };
 
 std::optional<int> descriptorOf(const std::string& path) {
-    if (path == "/dev/stdout") return STDOUT_FILENO;
-    if (path == "/dev/stderr") return STDERR_FILENO;
+    if (path == "/dev/stdout") return 1;
+    if (path == "/dev/stderr") return 2;
     for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
         if (!path.starts_with(folder)) continue;
         int number = 0;
@@ -131,26 +124,27 @@ Result<NewFile> NewFile::open(const std::string& path, unsigned mode) {
     to.path = to.target = path;
     const auto refused = [&](std::string_view why) { return failed(fmt::format("{} cannot be written: {}", path, why)); };
     if (const std::optional<int> open = descriptorOf(path)) {
-        to.file = Descriptor(::fcntl(*open, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+        to.file = duplicateOf(*open);
         return to.file.valid() ? Result<NewFile>(std::move(made)) : refused(reasonOf(errno));
     }
-    struct stat facts = {};
-    const bool exists = ::stat(path.c_str(), &facts) == 0;
-    if (!exists && errno != ENOENT) return refused(reasonOf(errno));
-    if (exists && S_ISDIR(facts.st_mode)) return refused(reasonOf(EISDIR));
-    if (exists && !S_ISREG(facts.st_mode)) {
-        to.file = openDescriptor(path, O_WRONLY | O_NOCTTY);
+    const FileFacts facts = factsOf(path);
+    const bool exists = facts.kind != FileFacts::Kind::none;
+    if (!exists && facts.error != ENOENT) return refused(reasonOf(facts.error));
+    if (facts.kind == FileFacts::Kind::folder) return refused(reasonOf(EISDIR));
+    if (exists && facts.kind != FileFacts::Kind::regular) {
+        to.file = openDescriptor(path, O_WRONLY);
         return to.file.valid() ? Result<NewFile>(std::move(made)) : refused(reasonOf(errno));
     }
     const fs::path folder = fs::path(path).parent_path();
     if (fs::path(path).filename().empty()) return refused("it is the name of a folder");
     if (exists) {
-        const Text whole(::realpath(path.c_str(), nullptr), std::free);
-        if (whole) to.target = whole.get();
-        if (!whole || ::access(path.c_str(), W_OK) != 0) return refused(reasonOf(errno));
+        const std::optional<std::string> whole = followed(path);
+        if (!whole) return refused(reasonOf(errno));
+        to.target = *whole;
+        if (const int error = mayWrite(path); error != 0) return refused(reasonOf(error));
         to.older = true;
     }
-    if (const int error = to.create(exists ? facts.st_mode & 07777U : mode); error != 0) {
+    if (const int error = to.create(exists ? facts.mode : mode); error != 0) {
         std::error_code ignored;
         if (error == ENOENT)
             return refused(folder.empty() || fs::exists(folder, ignored) ? "no file can be made in its folder"
@@ -163,10 +157,10 @@ Result<NewFile> NewFile::open(const std::string& path, unsigned mode) {
 Status NewFile::write(std::string_view bytes, std::string_view part) {
     Impl& to = *impl_;
     while (to.error == 0 && !bytes.empty()) {
-        const ssize_t written = ::write(to.file.get(), bytes.data(), bytes.size());
+        const std::ptrdiff_t written = writeSome(to.file, bytes.data(), bytes.size());
         if (written >= 0)
             bytes.remove_prefix(static_cast<size_t>(written));
-        else if (errno != EINTR)
+        else
             to.error = errno;
     }
     return to.error == 0 ? ok() : Status(cannotWrite(to.error, part));
@@ -174,14 +168,12 @@ Status NewFile::write(std::string_view bytes, std::string_view part) {
 
 Status NewFile::commit(Sync sync) {
     Impl& to = *impl_;
-    const bool cannotSync = to.error == 0 && sync == Sync::disk && ::fsync(to.file.get()) != 0;
-    if (cannotSync && errno != EINVAL && errno != ENOTSUP) to.error = errno;  // a pipe has no disk
+    const int unsynced = to.error == 0 && sync == Sync::disk ? syncToDisk(to.file) : 0;
+    if (unsynced != EINVAL && unsynced != ENOTSUP) to.error = std::max(to.error, unsynced);  // a pipe has no disk
     if (const int closed = to.file.close(); closed != 0 && to.error == 0) to.error = closed;
     if (to.error == 0 && !to.temporary.empty()) {
-        if (::rename(to.temporary.c_str(), to.target.c_str()) != 0)
-            to.error = errno;
-        else
-            to.forget();
+        to.error = replaceFile(to.temporary, to.target);
+        if (to.error == 0) to.forget();
     }
     if (to.error != 0) return cannotWrite(to.error);
     if (sync == Sync::disk) syncFolderOf(to.target);
@@ -190,18 +182,16 @@ Status NewFile::commit(Sync sync) {
 
 void NewFile::publish() {
     Impl& to = *impl_;
-    // A hard link fails if the name is taken, at whatever moment; a file system without them keeps the temporary name.
-    if (to.temporary.empty() || to.older || to.error != 0 || ::link(to.temporary.c_str(), to.target.c_str()) != 0) return;
-    (void)::unlink(to.temporary.c_str());
-    to.forget();
+    if (to.temporary.empty() || to.older || to.error != 0) return;
+    if (nameFile(to.temporary, to.target) == 0) to.forget();  // a file system that cannot keeps the temporary name
 }
 
 const std::string& NewFile::name() const { return impl_->temporary.empty() ? impl_->target : impl_->temporary; }
 
 void removeTemporaryFiles() noexcept {
-    if (owner != ::getpid()) return;
+    if (owner != processId()) return;
     for (Place& place : temporaries)
-        if (const char* name = place.exchange(nullptr); name != nullptr) (void)::unlink(name);
+        if (const char* name = place.exchange(nullptr); name != nullptr) removeFile(name);
 }
 
 }  // namespace rivulet

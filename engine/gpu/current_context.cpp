@@ -1,6 +1,10 @@
 #include "engine/gpu/current_context.h"
 
+#if defined(_WIN32)
+#include <windows.h>
+#else
 #include <dlfcn.h>
+#endif
 
 #include "engine/gpu/buffer.h"
 
@@ -10,6 +14,13 @@ namespace {
 using Current = void* (*)();
 
 // Calls `name` of `library` if the process has loaded that library, else returns null: only a loaded library can have created a context.
+#if defined(_WIN32)
+void* ask(const char* library, const char* name) {
+    const HMODULE loaded = GetModuleHandleA(library);
+    const auto current = loaded ? reinterpret_cast<Current>(reinterpret_cast<void*>(GetProcAddress(loaded, name))) : nullptr;
+    return current ? current() : nullptr;
+}
+#else
 void* ask(const char* library, const char* name) {
     void* loaded = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
     if (!loaded) return nullptr;
@@ -18,6 +29,7 @@ void* ask(const char* library, const char* name) {
     dlclose(loaded);
     return answer;
 }
+#endif
 
 unsigned createBuffer(size_t bytes) {
     Result<Buffer> made = Buffer::create(bytes);
@@ -38,6 +50,11 @@ void finish() { glFinish(); }
 
 GlContext currentContext() {
     GlContext gl{.create = createBuffer, .write = writeBuffer, .read = readBuffer, .destroy = deleteBuffer, .finish = finish};
+#if defined(_WIN32)
+    gl.egl = false;
+    gl.context = ask("opengl32.dll", "wglGetCurrentContext");
+    gl.display = gl.context ? ask("opengl32.dll", "wglGetCurrentDC") : nullptr;
+#else
     gl.context = ask("libEGL.so.1", "eglGetCurrentContext");
     if (gl.context) {
         gl.display = ask("libEGL.so.1", "eglGetCurrentDisplay");
@@ -49,6 +66,7 @@ GlContext currentContext() {
         gl.display = gl.context ? ask(library, "glXGetCurrentDisplay") : nullptr;
         if (gl.context) break;
     }
+#endif
     return gl;
 }
 

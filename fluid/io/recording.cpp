@@ -1,15 +1,14 @@
 #include "fluid/io/recording.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <new>
 
 #include "engine/core/assert.h"
+#include "engine/core/file_system.h"
 #include "engine/core/input_file.h"
 #include "fluid/voxel/packed_array.h"
 
@@ -239,9 +238,9 @@ Error RecordingReader::damaged(const std::string& what) const {
 bool RecordingReader::take(uint64_t at, void* to, size_t bytes) const {
     if (at > size_ || bytes > size_ - at) return false;
     for (size_t done = 0; done < bytes;) {
-        const ssize_t got = ::pread(file_.get(), static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(at + done));
-        if (got == 0 || (got < 0 && errno != EINTR)) return false;
-        if (got > 0) done += static_cast<size_t>(got);
+        const std::ptrdiff_t got = readAt(file_, static_cast<char*>(to) + done, bytes - done, at + done);
+        if (got <= 0) return false;
+        done += static_cast<size_t>(got);
     }
     return true;
 }
@@ -250,10 +249,10 @@ Result<RecordingReader> RecordingReader::open(const std::string& path) {
     try {
         Result<Descriptor> file = openInput(path);
         if (!file) return file.error();
-        struct stat facts = {};
-        if (fstat(file->get(), &facts) != 0) return badInput(fmt::format("{} cannot be read: {}", path, reasonOf(errno)));
+        const FileFacts facts = factsOf(*file);
+        if (facts.error != 0) return badInput(fmt::format("{} cannot be read: {}", path, reasonOf(facts.error)));
         RecordingReader reader(std::move(*file), path);
-        reader.size_ = static_cast<uint64_t>(facts.st_size);
+        reader.size_ = facts.bytes;
         if (Status head = reader.readHeader(); !head) return head.error();
         if (!reader.readIndex())
             if (Status found = reader.scan(); !found) return found.error();

@@ -39,10 +39,10 @@ inline Status ready(rivulet_context& context, Needs needs) {
     return ok();
 }
 
-// One call: the context is busy and, if the call needs OpenGL, the host's OpenGL state is restored at the end.
+// One call: the context is busy, loops run on its jobs and, if the call needs OpenGL, the host's OpenGL state is restored at the end.
 class CallScope {
   public:
-    CallScope(rivulet_context& context, Needs needs) : context_(context) {
+    CallScope(rivulet_context& context, Needs needs) : context_(context), jobs_(context.jobs) {
         if (needsGl(context, needs)) context_.hostGl.emplace();  // may throw
         context_.busy = true;
     }
@@ -55,6 +55,7 @@ class CallScope {
 
   private:
     rivulet_context& context_;
+    JobsScope jobs_;
 };
 
 inline rivulet_status statusOf(const Status& status, rivulet_error* why) {

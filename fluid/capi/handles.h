@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/jobs.h"
 #include "engine/gpu/host_state.h"
 #include "fluid/capi/callbacks.h"
 #include "fluid/capi/rivulet.h"
@@ -23,6 +24,8 @@ struct rivulet_context {
     rivulet::capi::HostLog hostLog;
     rivulet::GlFacts gl;
     std::unique_ptr<rivulet::Device> device;
+    std::optional<rivulet::Workers> workers;  // without jobs of the host
+    rivulet::Jobs jobs;
     std::unique_ptr<rivulet::WaterRenderer> water;  // null: no OpenGL
     std::string name;
     std::map<std::string, rivulet::PassTime> passes;  // of the simulation, since rivulet_context_times() was called

@@ -44,6 +44,29 @@ typedef void (*rivulet_function)(void);
 typedef rivulet_function (*rivulet_find_function)(const char* name); /* glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress */
 typedef enum rivulet_level { RIVULET_INFO = 0, RIVULET_NOTICE = 1, RIVULET_WARNING = 2, RIVULET_ERROR = 3 } rivulet_level;
 
+/* The host's job system. Loops of all calls of the context run on it: the passes of backend cpu, and the baking of walls of all backends.
+   Results do not depend on it. */
+typedef struct rivulet_jobs {
+    size_t size;
+    void* user; /* passed to run */
+    /* Calls function(argument, k) once for each k from 0 to count - 1, in any order, on any threads, and returns when all calls have
+       returned. count is at most workers. The calls do not wait for each other: they may also run one after another. run is called by the
+       threads that call this library, never within function; it must not throw, nor call rivulet functions of this context. */
+    void (*run)(void* user, void (*function)(void* argument, size_t k), void* argument, size_t count);
+    int32_t workers; /* calls that can run at a time, the calling thread's among them; 1 or more */
+} rivulet_jobs;
+
+/* The host's memory for the buffers of backend cpu: particles, neighbour grid and lists, fields of walls, foam and drops, which are most of
+   the memory of a world. Small objects, results of queries and files, and a wall while it is baked, use malloc. */
+typedef struct rivulet_memory {
+    size_t size;
+    void* user; /* passed to both functions */
+    /* bytes, a multiple of alignment, at an address that is a multiple of alignment, a power of two. NULL: out of memory; the call that
+       needs it then returns RIVULET_FAILED. Called by the threads that call this library; it must not throw. */
+    void* (*allocate)(void* user, size_t bytes, size_t alignment);
+    void (*release)(void* user, void* memory, size_t bytes); /* what allocate returned, with its bytes */
+} rivulet_memory;
+
 typedef struct rivulet_context_options {
     size_t size;
     /* Finds OpenGL's functions in the current OpenGL context. NULL: no OpenGL; worlds are simulated and cannot be drawn. */
@@ -58,6 +81,9 @@ typedef struct rivulet_context_options {
     float sky_horizon[3], sky_zenith[3]; /* reflected by the water, radiance in the target's units; all 0: a grey-blue sky */
     float sky_sun[3];                    /* towards the sun; all 0: the default light direction of rivulet_view */
     float clouds;                        /* share of the sky that they cover, 0 to 1, approximate */
+    int32_t threads;                     /* that a loop runs on at most; 0: all cores, or all workers of jobs */
+    const rivulet_jobs* jobs;            /* NULL: the library's own threads */
+    const rivulet_memory* memory;        /* NULL: malloc */
 } rivulet_context_options;
 
 RIVULET_API rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why);

@@ -84,8 +84,8 @@ void signInside(std::span<const MeshView> meshes, VoxelField& field) {
     inside.origin = field.surface.origin - 0.5F * field.surface.voxel;
     for (const CleanMesh& mesh : cleaned) {
         voxelizeSolid(mesh, inside);
-        parallelRanges(tbb::blocked_range<size_t>(0, field.distance.size(), 65536), [&](const tbb::blocked_range<size_t>& range) {
-            for (size_t k = range.begin(); k != range.end(); ++k) {
+        parallelParts(field.distance.size(), 65536, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k != end; ++k) {
                 if (((inside.bits[k >> 3U] >> (k & 7U)) & 1U) != 0) field.distance[k] = -std::abs(field.distance[k]);
             }
         });

@@ -53,6 +53,7 @@ bool Callback::left() const {
 void HostLog::add(rivulet_level level, std::string sentence) {
     if (function == nullptr) return;
     try {
+        const std::scoped_lock lock(mutex_);
         waiting_.emplace_back(level, std::move(sentence));
     } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): a sentence less, and the call goes on
     }
@@ -60,9 +61,12 @@ void HostLog::add(rivulet_level level, std::string sentence) {
 
 void HostLog::deliver(Callback& callback) {
     if (callback.frame != nullptr) return;
-    while (!waiting_.empty()) {
+    for (;;) {
+        std::unique_lock lock(mutex_);
+        if (waiting_.empty()) return;
         const auto [level, sentence] = std::move(waiting_.front());
         waiting_.pop_front();
+        lock.unlock();
         tell(callback, *this, level, sentence);
     }
 }

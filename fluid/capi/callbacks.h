@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
@@ -39,10 +40,11 @@ class HostLog {
   public:
     void (*function)(void* user, rivulet_level level, const char* sentence) = nullptr;
     void* user = nullptr;
-    void add(rivulet_level level, std::string sentence);
-    void deliver(Callback& callback);  // unless a function of the host is running: the call that runs it delivers them
+    void add(rivulet_level level, std::string sentence);  // from any thread
+    void deliver(Callback& callback);                     // unless a function of the host is running: the call that runs it delivers them
 
   private:
+    std::mutex mutex_;
     std::deque<std::pair<rivulet_level, std::string>> waiting_;
 };
 

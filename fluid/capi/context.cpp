@@ -164,6 +164,16 @@ void rivulet_context_destroy(rivulet_context* context) {
     if (gone) delete context;
 }
 
+rivulet_status rivulet_context_lost(rivulet_context* context, rivulet_error* why) {
+    return guarded(why, [&]() -> Status {
+        if (context == nullptr) return badInput("context is NULL");
+        if (context->busy || context->callback.frame != nullptr) return badInput("the context is in use: report its loss after the call");
+        context->lost = true;
+        context->current = nullptr;
+        return ok();
+    });
+}
+
 const char* rivulet_context_device(const rivulet_context* context) { return context == nullptr ? "" : context->name.c_str(); }
 
 rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time* times, size_t capacity, size_t* count,

@@ -15,6 +15,7 @@
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/render/backend.h"
+#include "fluid/render/fluid_snapshot.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/render/water_renderer.h"
 #include "fluid/sim/world/fluid_world.h"
@@ -23,17 +24,19 @@ struct rivulet_context {
     rivulet::Log log;  // into hostLog
     rivulet::capi::HostLog hostLog;
     rivulet::GlFacts gl;
-    std::unique_ptr<rivulet::Device> device;
     std::optional<rivulet::Workers> workers;  // without jobs of the host
     rivulet::Jobs jobs;
+    std::unique_ptr<rivulet::Device> device;
     std::unique_ptr<rivulet::WaterRenderer> water;  // null: no OpenGL
     std::string name;
     std::map<std::string, rivulet::PassTime> passes;  // of the simulation, since rivulet_context_times() was called
     double deviceMs = 0;                              // of the simulation, since the start
     size_t memoryLimit = 0;                           // as rivulet_context_options
-    int children = 0;                                 // worlds and skins
+    std::atomic<int> children = 0;                    // worlds, skins and snapshots
     void* current = nullptr;                          // the OpenGL context that it was created in; null: none, or not known
-    bool busy = false;                                // a call is running
+    bool lost = false;                                // the OpenGL context has ended: rivulet_context_lost
+    bool busy = false;                                // a call is running, of all but those that draw a snapshot
+    std::atomic<bool> drawing = false;                // a call that uses OpenGL is running
     rivulet::capi::Callback callback;                 // of that call
     std::optional<rivulet::gpu::HostState> hostGl;    // of that call, if it uses OpenGL
     std::atomic<bool> stop = false;                   // of the device
@@ -74,6 +77,15 @@ struct rivulet_world {
     std::unique_ptr<rivulet::FluidWorld> world;
     rivulet::FluidUpload upload;
     double deviceMs = 0;  // the context's, when this was last stepped
+};
+
+struct rivulet_snapshot {
+    rivulet_context* context = nullptr;
+    rivulet::FluidSnapshot taken;
+    rivulet::FluidLookParams look;  // of the world, then
+    std::string liquid;
+    rivulet::FluidUpload upload;
+    std::atomic<bool> used = false;  // a call fills or draws it
 };
 
 struct rivulet_skin {

@@ -20,7 +20,8 @@
  * where, and the remedy. Nothing is thrown. A NULL handle gives RIVULET_BAD_INPUT; destroying NULL does nothing.
  *
  * Threads: one thread at a time uses a context and everything made from it; with OpenGL, a thread on which the context's OpenGL context is
- * current. Contexts are independent: different threads may use different ones at the same time.
+ * current. Contexts are independent: different threads may use different ones at the same time. Snapshots can be drawn while another thread
+ * steps their world: see rivulet_snapshot.h.
  *
  * Callbacks (log, bodies) run on the calling thread, before the call returns; log is called at the end of the call. A callback that calls
  * back into the same context gets RIVULET_BAD_INPUT. A C++ callback may throw: the call then goes on and returns RIVULET_FAILED, with the
@@ -35,7 +36,7 @@
  * OpenGL context of their rivulet_context is not current. They restore all OpenGL state, with two exceptions: pending errors of glGetError
  * may be cleared, and an object that was deleted while bound is unbound. Transform feedback, counting queries and conditional rendering
  * must not be active. Only rivulet_world_draw draws. Destroy worlds, skins and contexts before the OpenGL context: if it is not current,
- * destruction is refused and logged.
+ * destruction is refused and logged. If it has ended, call rivulet_context_lost first.
  */
 #ifndef RIVULET_H
 #define RIVULET_H
@@ -44,6 +45,7 @@
 #include "rivulet_draw.h"
 #include "rivulet_query.h"
 #include "rivulet_skin.h"
+#include "rivulet_snapshot.h"
 #include "rivulet_world.h"
 
 #endif

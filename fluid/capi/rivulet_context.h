@@ -35,7 +35,7 @@ typedef struct rivulet_error {
 
 /* A device is lost when its driver was restarted, the GPU was removed, or a command of it failed. From then on every call that needs it
    returns RIVULET_FAILED, and files that a save or an export would replace stay. Destroy the worlds, skins and the context, and create
-   others. */
+   others. See rivulet_context_lost. */
 typedef struct rivulet_context rivulet_context; /* a device that simulates and, with OpenGL, a renderer */
 typedef struct rivulet_world rivulet_world;     /* particles in a box, with walls and bodies */
 typedef struct rivulet_skin rivulet_skin;       /* drops and films on a mesh, and a map of them */
@@ -89,6 +89,11 @@ typedef struct rivulet_context_options {
 RIVULET_API rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why);
 /* Destroy its worlds and skins first: a context that still has some stays, and the log says so. */
 RIVULET_API void rivulet_context_destroy(rivulet_context* context);
+/* The OpenGL context that this was created in is gone or lost: destroyed by the host, reset by its driver (glGetGraphicsResetStatus). From
+   now on no function of OpenGL is called for this context; it, its worlds and its skins can be destroyed on any thread, which frees their
+   host memory. OpenGL objects of theirs end with the OpenGL context; they stay only where another context shares them. Worlds of backend
+   cpu, and of cl without memory shared with OpenGL, can still be stepped, queried and saved; all else returns RIVULET_FAILED. */
+RIVULET_API rivulet_status rivulet_context_lost(rivulet_context* context, rivulet_error* why);
 /* The device that simulates, "cpu: AMD EPYC, 2 threads"; valid as long as the context. */
 RIVULET_API const char* rivulet_context_device(const rivulet_context* context);
 /* stop 1: from now on, a step of a world ends within milliseconds, on a GPU with what it has in its queue; 0: not any more. It may be

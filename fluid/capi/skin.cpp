@@ -107,6 +107,7 @@ rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_
         const Result<rivulet_skin_options> o = readStruct(options, "rivulet_skin_options", "options");
         if (!o) return o.error();
         if (Status can = ready(*context, Needs::drawing); !can) return can;
+        if (Status there = stillThere(*context, Needs::device); !there) return there;
         const CallScope scope(*context, Needs::drawing);
         auto made = std::make_unique<rivulet_skin>();
         if (Status done = createSkin(*context, *o, *made); !done) return done;

@@ -276,6 +276,7 @@ rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_worl
         const Result<rivulet_world_options> o = readStruct(options, "rivulet_world_options", "options");
         if (!o) return o.error();
         if (Status can = ready(*context, Needs::drawing); !can) return can;
+        if (Status there = stillThere(*context, Needs::device); !there) return there;
         const CallScope scope(*context, Needs::drawing);
         auto made = std::make_unique<rivulet_world>();
         if (Status done = createWorld(*context, *o, *made); !done) return done;

@@ -36,9 +36,9 @@ for name in $shown; do
     grep -qx "$name" <<<"$declared" || { echo "$name is not in rivulet.h"; exit 1; }
 done
 
-for program in main faults gl many; do
+for program in main faults jobs gl many lost overlap; do
     packages=rivulet
-    [ $program = main ] || [ $program = faults ] || packages="rivulet egl gl"
+    case $program in gl|many|lost|overlap) packages="rivulet egl gl" ;; esac
     read -ra flags <<<"$(pkg-config --cflags --libs $packages)"
     "${cc[@]}" -std=c11 $warnings "$here/$program.c" "${flags[@]}" -Wl,-rpath,"$(dirname "$library")" -lm -lpthread -o "$work/$program"
 done
@@ -49,9 +49,18 @@ cxx=(c++ -O1)
 "$work/main" "$work"
 "$work/faults"
 "$work/throws"
-for program in gl many; do
+"$work/jobs"
+# Loaded and unloaded by dlopen. A sanitizer's own library cannot be loaded late.
+runs=(gl many lost overlap)
+if [ "${cc[0]}" = cc ]; then
+    read -ra flags <<<"$(pkg-config --cflags rivulet) $(pkg-config --cflags --libs egl gl)"
+    "${cc[@]}" -std=c11 $warnings "$here/unload.c" "${flags[@]}" -ldl -lpthread -o "$work/unload"
+    runs+=("unload cpu $library" "unload cl $library" "unload gl $library")
+fi
+for program in "${runs[@]}"; do
     status=0
-    "$work/$program" || status=$?
-    if [ $status -eq 77 ] && [ -z "${RIVULET_TEST_DEVICES:-}" ]; then echo "no OpenGL: $program is left out"; status=0; fi
+    read -ra words <<<"$program"
+    "$work/${words[0]}" "${words[@]:1}" || status=$?
+    if [ $status -eq 77 ] && [ -z "${RIVULET_TEST_DEVICES:-}" ]; then echo "no OpenGL or OpenCL: $program is left out"; status=0; fi
     [ $status -eq 0 ] || exit $status
 done

@@ -116,6 +116,7 @@ class SolidPasses {
         Buffer displacement;
     };
 
+    static Status check(std::span<const Surface> surfaces);
     Status addMoving(Moving moving);
     // `planes`: what is pushed may be beyond the box or a plane. `seconds`: as keepOut; nothing: the way is the last substep's.
     void collide(const StepParams& step, const Movers& movers, bool planes, std::optional<double> seconds, ProbePasses* probes);

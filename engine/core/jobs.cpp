@@ -77,6 +77,10 @@ void runInPool(void* pool, void (*function)(void*, size_t), void* argument, size
     static_cast<ThreadPool*>(pool)->run(function, argument, count);
 }
 
+void mayStop(const Jobs& jobs) {
+    if (jobs.stop != nullptr && jobs.stop->load(std::memory_order_relaxed)) throw LoopStopped();
+}
+
 struct Loop {
     size_t count, grain;
     LoopBody body;
@@ -91,8 +95,10 @@ struct Loop {
         const Jobs jobsBefore = std::exchange(current, jobs.run == runInArena ? Jobs{} : jobs);
         const bool aloneBefore = std::exchange(alone, !kTbb || (jobs.run != nullptr && jobs.run != runInArena));
         try {
-            for (size_t begin = 0; (begin = next.fetch_add(grain, std::memory_order_relaxed)) < count;)
+            for (size_t begin = 0; (begin = next.fetch_add(grain, std::memory_order_relaxed)) < count;) {
+                mayStop(jobs);
                 body(context, begin, std::min(begin + grain, count));
+            }
         } catch (...) {
             if (!failed.test_and_set()) thrown = std::current_exception();
             next.store(count, std::memory_order_relaxed);
@@ -108,6 +114,16 @@ JobsScope::JobsScope(const Jobs& jobs) : before_(std::exchange(current, jobs)) {
 
 JobsScope::~JobsScope() { current = before_; }
 
+Jobs aloneUntil(const std::atomic<bool>* stop) {
+    Jobs jobs;
+    jobs.run = [](void*, void (*function)(void*, size_t), void* argument, size_t count) {
+        for (size_t k = 0; k < count; ++k) function(argument, k);
+    };
+    jobs.workers = 1;
+    jobs.stop = stop;
+    return jobs;
+}
+
 Jobs currentJobs() { return current; }
 
 int jobWorkers() {
@@ -120,7 +136,10 @@ void runLoop(size_t count, size_t grain, LoopBody body, const void* context) {
     if (count == 0) return;
     const size_t parts = (count - 1) / grain + 1, calls = std::min(parts, static_cast<size_t>(jobWorkers()));
     if (calls == 1) {
-        for (size_t begin = 0; begin < count; begin += grain) body(context, begin, std::min(begin + grain, count));
+        for (size_t begin = 0; begin < count; begin += grain) {
+            mayStop(current);
+            body(context, begin, std::min(begin + grain, count));
+        }
         return;
     }
     Loop loop{.count = count, .grain = grain, .body = body, .context = context, .jobs = current, .next = 0, .failed = {}, .thrown = {}};

@@ -3,6 +3,7 @@
 // with ThreadSanitizer, which therefore cannot see how it synchronizes its threads and would report races that do not exist.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 
@@ -17,7 +18,16 @@ struct Jobs {
     // `run`. Null: the library's own threads.
     void (*run)(void* user, void (*function)(void* argument, size_t k), void* argument, size_t count) = nullptr;
     int workers = 0;  // calls that can run at a time, the calling thread among them: 1 or more if `run` is given
+    // Runs function(argument) beside the frames, on any thread, and returns at once; called at any time, also within `function`. Null: a
+    // thread of its own.
+    void (*start)(void* user, void (*function)(void* argument), void* argument) = nullptr;
+    // While true, loops end with LoopStopped before their next part. Null: nothing stops them.
+    const std::atomic<bool>* stop = nullptr;
 };
+struct LoopStopped {};
+
+// Of loops that run on the calling thread alone.
+Jobs aloneUntil(const std::atomic<bool>* stop);
 
 // While it lives, parallel loops of this thread run on these jobs. The innermost scope counts.
 class JobsScope {

@@ -67,7 +67,7 @@ Result<CpuOptions> cpuOptionsOf(const rivulet_context_options& o, rivulet_contex
     if (o.jobs != nullptr && (jobs->run == nullptr || jobs->workers < 1))
         return badInput("jobs has no run, or less than 1 worker: give both, or set options.jobs to NULL");
     if (jobs->run != nullptr)
-        c.jobs = {jobs->user, jobs->run, o.threads > 0 ? std::min(o.threads, jobs->workers) : jobs->workers};
+        c.jobs = {jobs->user, jobs->run, o.threads > 0 ? std::min(o.threads, jobs->workers) : jobs->workers, jobs->start, nullptr};
     else
         c.jobs = c.workers.emplace(o.threads > 0 ? std::min(o.threads, jobWorkers()) : jobWorkers())
                      .jobs();  // they end with the context: a host may unload us

@@ -54,6 +54,9 @@ typedef struct rivulet_jobs {
        threads that call this library, never within function; it must not throw, nor call rivulet functions of this context. */
     void (*run)(void* user, void (*function)(void* argument, size_t k), void* argument, size_t count);
     int32_t workers; /* calls that can run at a time, the calling thread's among them; 1 or more */
+    /* Runs function(argument) beside the frames, on any thread, and returns at once: a wall that is baked while the world runs. NULL: a
+       thread of the library's own. The world waits for it when it is destroyed. */
+    void (*start)(void* user, void (*function)(void* argument), void* argument);
 } rivulet_jobs;
 
 /* The host's memory for the buffers of backend cpu: particles, neighbour grid and lists, fields of walls, foam and drops, which are most of

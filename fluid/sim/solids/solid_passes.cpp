@@ -91,6 +91,16 @@ Status SolidPasses::check(std::span<const Surface> surfaces) {
     return ok();
 }
 
+bool SolidPasses::insideAdded(const vec3& p, float spacing) const {
+    for (const PlaneSolid& plane : planeSolids_)
+        if (glm::dot(plane.normal, p - plane.position) < 0) return true;
+    for (size_t k = 0; k < rigid_.size(); ++k)
+        if (rigid_[k].added && !rigid_[k].on.maySpawn(poses_[k].toOwn(p), spacing, 0)) return true;
+    for (const Moving& m : deforming_)
+        if (m.added && !m.on.maySpawn(p, spacing, 0)) return true;
+    return staticAdded_ && static_.field != nullptr && (!static_.maySpawn(p, spacing, 0) || inWall(static_.field->surface, p));
+}
+
 bool SolidPasses::hasSurfaces(std::span<const Surface> surfaces) const {
     return std::ranges::equal(
         surfaces, surfaces_, [](const Surface& a, const Surface& b) { return a.friction == b.friction && a.restitution == b.restitution; });
@@ -116,18 +126,21 @@ Status SolidPasses::restore(const Places& places) {
                                     places.poses.size(), places.shapes.size(), rigid_.size(), deforming_.size()));
     poses_ = places.poses;
     for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
-    for (size_t k = 0; k < deforming_.size(); ++k) {
-        Moving& m = deforming_[k];
-        m.shapeFrom = m.shapeTarget = m.shapeNow = places.shapes[k];
-        m.updates = 1;
-        // Twice: the second time nothing has moved, and the wall's velocity is nought again.
-        for (int twice = 0; twice < 2; ++twice) {
-            m.updated = 0;
-            if (Status done = deform(m, 1.0, 1.0); !done) return done;
-        }
-    }
+    for (size_t k = 0; k < deforming_.size(); ++k)
+        if (Status done = settle(deforming_[k], places.shapes[k]); !done) return done;
     fastestWall_ = 0;
     voxelsRewritten_ = places.voxelsRewritten;
+    return ok();
+}
+
+Status SolidPasses::settle(Moving& m, const std::vector<vec3>& shape) {
+    m.shapeFrom = m.shapeTarget = m.shapeNow = shape;
+    m.updates = 1;
+    // Twice: the second time nothing has moved, and the wall's velocity is nought again.
+    for (int twice = 0; twice < 2; ++twice) {
+        m.updated = 0;
+        if (Status done = deform(m, 1.0, 1.0); !done) return done;
+    }
     return ok();
 }
 
@@ -278,6 +291,19 @@ void SolidPasses::setMotion(MotionParams& m, const Pose& start, const Pose& end,
     m.origin = vec4(end.position, 0.0F);
 }
 
+void SolidPasses::writePlanes() {
+    const auto words = surfaceWords(surfaces_, otherwise_);
+    std::vector<vec4> list;
+    for (const PlaneSolid& p : planeSolids_) {
+        const vec3 n = glm::normalize(p.normal);
+        list.emplace_back(n, -glm::dot(n, p.position));
+        float values[2];
+        std::memcpy(values, &words[2 * p.surface], sizeof values);
+        list.emplace_back(values[0], values[1], 0.0F, 0.0F);
+    }
+    device_->writeAll<vec4>(planes_, list);
+}
+
 Status SolidPasses::advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to) {
     const Surface otherwise{params.collision.friction, params.collision.restitution};
     if (surfacesChanged_ || otherwise.friction != otherwise_.friction || otherwise.restitution != otherwise_.restitution) {
@@ -290,15 +316,7 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
         if (static_.field != nullptr) tell(static_);
         for (Moving& m : rigid_) tell(m.on);
         for (Moving& m : deforming_) tell(m.on);
-        std::vector<vec4> list;
-        for (const PlaneSolid& p : planeSolids_) {
-            const vec3 n = glm::normalize(p.normal);
-            list.emplace_back(n, -glm::dot(n, p.position));
-            float values[2];
-            std::memcpy(values, &words[2 * p.surface], sizeof values);
-            list.emplace_back(values[0], values[1], 0.0F, 0.0F);
-        }
-        device_->writeAll<vec4>(planes_, list);
+        writePlanes();
     }
     const FieldContact contact{.spacing = params.spacing, .restSpeed = 2.0F * gravity * step.dt, .countIndex = step.cellCount};
     if (static_.field != nullptr) {

@@ -42,55 +42,95 @@ Status SolidPasses::Field::upload(Device& device) {
 Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const FluidParams& params, std::span<const Define> threads) {
     SolidPasses s;
     s.device_ = &device;
-    s.planeSolids_ = solids.planes;
-    for (const PlaneSolid& p : s.planeSolids_) {
+    std::vector<Pose> starts;
+    starts.reserve(solids.rigid.size());
+    for (const RigidSolid& rigid : solids.rigid) starts.push_back(rigid.pose);
+    if (Status done = s.replace(solids, starts, params, threads); !done) return done.error();
+    return s;
+}
+
+// The first of `all` with this field, whose place in `taken` is still free. Null: none.
+SolidPasses::Moving* SolidPasses::keep(std::vector<Moving>& all, const VoxelField* field, std::vector<const Moving*>& taken) {
+    for (Moving& m : all)
+        if (m.on.field == field && field != nullptr && std::find(taken.begin(), taken.end(), &m) == taken.end()) {
+            taken.push_back(&m);
+            return &m;
+        }
+    return nullptr;
+}
+
+Status SolidPasses::replace(const Solids& solids, std::span<const Pose> poses, const FluidParams& params, std::span<const Define> threads) {
+    SolidPasses next;  // all that may fail comes before anything changes
+    next.device_ = device_;
+    next.planeSolids_ = solids.planes;
+    for (const PlaneSolid& p : next.planeSolids_) {
         if (!isFinite(p.position) || !isFinite(p.normal)) return badInput("a plane's place or normal is not finite");
         if (!(glm::length(p.normal) > 0.0F)) return badInput("a plane's normal is zero: give it a direction");
         if (p.surface >= kMostSurfaces) return badInput(fmt::format("a plane's surface is {}, must be below {}", p.surface, kMostSurfaces));
     }
-    if (Status sound = check(solids.surfaces); !sound) return sound.error();
-    s.surfaces_ = solids.surfaces;
-    Result<Buffer> planes = device.allocate(std::max<size_t>(s.planeSolids_.size(), 1) * 2 * sizeof(vec4));
+    if (Status sound = check(solids.surfaces); !sound) return sound;
+    next.surfaces_ = solids.surfaces;
+    if (poses.size() != solids.rigid.size())
+        return badInput(fmt::format("{} poses were given for {} moving solids: give one for each", poses.size(), solids.rigid.size()));
+    Result<Buffer> planes = device_->allocate(std::max<size_t>(next.planeSolids_.size(), 1) * 2 * sizeof(vec4));
     if (!planes) return planes.error();
-    s.planes_ = std::move(*planes);
+    next.planes_ = std::move(*planes);
 
-    if (solids.field != nullptr && !solids.field->empty()) {
-        if (Status wide = reaches(*solids.field, params.spacing); !wide) return wide.error();
-        s.static_.field = solids.field;
-        if (Status done = s.static_.upload(device); !done) return done.error();
-        Result<Buffer> block = device.allocate(sizeof(FieldParams));
+    const bool still = solids.field != nullptr && !solids.field->empty(), keepsStill = still && static_.field == solids.field;
+    if (still) {
+        if (Status wide = reaches(*solids.field, params.spacing); !wide) return wide;
+        next.static_.field = solids.field;
+        if (!keepsStill)
+            if (Status done = next.static_.upload(*device_); !done) return done;
+        Result<Buffer> block = device_->allocate(sizeof(FieldParams));
         if (!block) return block.error();
-        s.staticBlock_ = std::move(*block);
+        next.staticBlock_ = std::move(*block);
     }
-    for (const RigidSolid& rigid : solids.rigid) {
-        if (!isSound(rigid.pose))
+    std::vector<Moving*> rigid, deforming;  // those that stay; null: new
+    std::vector<const Moving*> taken;
+    for (size_t k = 0; k < solids.rigid.size(); ++k) {
+        const RigidSolid& one = solids.rigid[k];
+        if (!isSound(one.pose) || !isSound(poses[k]))
             return badInput(fmt::format("the pose of moving solid {} is not finite, farther than {} m, or its rotation has no unit length",
-                                        s.rigid_.size(), kMostDistance));
-        if (rigid.field != nullptr)
-            if (Status wide = reaches(*rigid.field, params.spacing); !wide) return wide.error();
+                                        k, kMostDistance));
+        if (one.field != nullptr)
+            if (Status wide = reaches(*one.field, params.spacing); !wide) return wide;
         Moving m;
-        m.on.field = rigid.field;
-        m.atStart = rigid.pose;
-        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
+        m.on.field = one.field;
+        m.atStart = one.pose;
+        m.from = m.target = poses[k];
+        rigid.push_back(keep(rigid_, one.field, taken));
+        if (rigid.back() != nullptr)
+            next.rigid_.push_back(std::move(m));
+        else if (Status done = next.addMoving(std::move(m)); !done)
+            return done;
     }
+    next.poses_.assign(poses.begin(), poses.end());
     for (DeformingField* shape : solids.deforming) {
         if (shape == nullptr) return badInput("a deforming solid has no field: bake its mesh first");
-        if (Status wide = reaches(shape->field(), params.spacing); !wide) return wide.error();
+        if (Status wide = reaches(shape->field(), params.spacing); !wide) return wide;
         Moving m;
         m.shape = shape;
         m.on.field = &shape->field();
         m.shapeAtStart.assign(shape->positions().begin(), shape->positions().end());
-        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
+        deforming.push_back(keep(deforming_, m.on.field, taken));
+        if (deforming.back() != nullptr) {
+            next.deforming_.push_back(std::move(m));
+            continue;
+        }
+        if (Status done = next.addMoving(std::move(m)); !done) return done;
+        Moving& made = next.deforming_.back();
+        if (Status done = next.settle(made, made.shapeAtStart); !done) return done;
     }
+    next.walled_ = !glm::all(params.box.periodic()) || next.any();
+    next.thesis_ = params.collision.walk == "thesis";
+    const bool thesis = next.thesis_;
     struct Wanted {
         Kernel* kernel;
         const char* path;
         std::vector<Define> defines;
         bool wanted;
     };
-    s.walled_ = !glm::all(params.box.periodic()) || s.any();
-    s.thesis_ = params.collision.walk == "thesis";
-    const bool thesis = s.thesis_, still = s.static_.field != nullptr;
     const auto collide = [&](const char* motion) {
         std::vector<Define> d(threads.begin(), threads.end());
         if (*motion != 0) d.push_back({motion, "1"});
@@ -99,26 +139,46 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         return d;
     };
     for (const Wanted& w :
-         {Wanted{&s.nearWalls_, "fluid/solids/near_walls", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
-          Wanted{&s.followWalls_, "fluid/solids/follow_walls", {}, s.walled_},
-          Wanted{&s.friction_, "fluid/forces/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
-                 s.walled_},
-          Wanted{&s.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
-                 s.walled_},
-          Wanted{&s.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !s.rigid_.empty()},
-          Wanted{&s.frictionDeforming_, "fluid/forces/wall_friction_moving", {{"DEFORMING", "1"}}, !s.deforming_.empty()},
-          Wanted{&s.walls_, "fluid/solids/walls", {threads.begin(), threads.end()}, s.walled_},
-          Wanted{&s.nearWallsMoving_, "fluid/solids/near_walls_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
-          Wanted{&s.collide_, "fluid/solids/collide", collide(""), still},
-          Wanted{&s.collideRigid_, "fluid/solids/collide", collide("MOVING"), !s.rigid_.empty()},
-          Wanted{&s.collideDeforming_, "fluid/solids/collide", collide("DEFORMING"), !s.deforming_.empty()}}) {
+         {Wanted{&next.nearWalls_, "fluid/solids/near_walls", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
+                 next.walled_},
+          Wanted{&next.followWalls_, "fluid/solids/follow_walls", {}, next.walled_},
+          Wanted{&next.friction_, "fluid/forces/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
+                 next.walled_},
+          Wanted{&next.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
+                 next.walled_},
+          Wanted{&next.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !next.rigid_.empty()},
+          Wanted{&next.frictionDeforming_, "fluid/forces/wall_friction_moving", {{"DEFORMING", "1"}}, !next.deforming_.empty()},
+          Wanted{&next.walls_, "fluid/solids/walls", {threads.begin(), threads.end()}, next.walled_},
+          Wanted{&next.nearWallsMoving_, "fluid/solids/near_walls_moving", {}, !next.rigid_.empty() || !next.deforming_.empty()},
+          Wanted{&next.collide_, "fluid/solids/collide", collide(""), still},
+          Wanted{&next.collideRigid_, "fluid/solids/collide", collide("MOVING"), !next.rigid_.empty()},
+          Wanted{&next.collideDeforming_, "fluid/solids/collide", collide("DEFORMING"), !next.deforming_.empty()}}) {
         if (!w.wanted) continue;
-        Result<Kernel> found = device.kernel(w.path, w.defines);
+        Result<Kernel> found = device_->kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    if (Status done = s.reset(); !done) return done.error();
-    return s;
+    next.staticAdded_ = still && !keepsStill;
+    if (keepsStill) next.static_ = std::move(static_);
+    for (size_t k = 0; k < rigid.size(); ++k) {
+        if (rigid[k] == nullptr) continue;
+        const Pose start = next.rigid_[k].atStart;
+        next.rigid_[k] = std::move(*rigid[k]);
+        next.rigid_[k].atStart = start;
+        next.rigid_[k].added = false;
+        next.rigid_[k].from = next.rigid_[k].target = poses[k];
+    }
+    for (size_t k = 0; k < deforming.size(); ++k)
+        if (deforming[k] != nullptr) {
+            next.deforming_[k] = std::move(*deforming[k]);
+            next.deforming_[k].added = false;
+        }
+    next.voxelsRewritten_ = voxelsRewritten_;
+    next.otherwise_ = otherwise_;
+    const bool first = !planes_;
+    *this = std::move(next);
+    if (!first) writePlanes();  // a method may move particles before the next advance()
+    return ok();
 }
 
 Status SolidPasses::addMoving(Moving m) {

@@ -44,6 +44,7 @@ inline Status ready(rivulet_context& context, Needs needs) {
     if (left) {
         if (context.hostGl) context.drawing = false;
         context.hostGl.reset();  // restores the host's state
+        gpu::LostContext::here() = false;
         context.callback = {};
         context.busy = false;
     }

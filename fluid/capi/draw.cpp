@@ -111,9 +111,10 @@ rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid
         if (solid != RIVULET_WALL && solid != RIVULET_BODY)
             return badInput(fmt::format("solid is {}: use RIVULET_WALL or RIVULET_BODY", solid));
         const bool wall = solid == RIVULET_WALL;
-        const size_t count = wall ? world->walls.size() : world->world->bodies().size();
+        const std::vector<SolidRef> walls = world->walls.solids().colliders;
+        const size_t count = wall ? walls.size() : world->world->bodies().size();
         if (index >= count) return badInput(fmt::format("there is no {} {}: the world has {}", wall ? "wall" : "body", index, count));
-        const SolidRef ref = wall ? world->walls[index] : SolidRef{ProbeOn::body, static_cast<uint32_t>(index)};
+        const SolidRef ref = wall ? walls[index] : SolidRef{ProbeOn::body, static_cast<uint32_t>(index)};
         const WetSolid* found = view.surface->find(ref);
         if (found == nullptr && wall)
             return badInput(fmt::format("wall {} does not get wet: none of its surface is inside fluid.box", index));

@@ -12,6 +12,7 @@
 #include "engine/gpu/host_state.h"
 #include "fluid/capi/callbacks.h"
 #include "fluid/capi/rivulet.h"
+#include "fluid/capi/walls.h"
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/render/backend.h"
@@ -53,6 +54,7 @@ struct WorldParams {
     std::vector<SinkParams> sinks;
     FluidLookParams look;
     void visit(ParamVisitor& v);
+    void visitSources(ParamVisitor& v);  // emitters and sinks
 };
 
 // A host's functions as a BodyHost.
@@ -69,9 +71,7 @@ struct BodyCallbacks {
 struct rivulet_world {
     rivulet_context* context = nullptr;
     rivulet::capi::WorldParams params;
-    std::vector<std::unique_ptr<rivulet::VoxelField>> fields;
-    std::vector<rivulet::SolidRef> walls;  // what each is in the world
-    std::vector<rivulet::Pose> poses;      // of the walls that move: the last requested
+    rivulet::capi::Walls walls;
     std::unique_ptr<rivulet::capi::BodyCallbacks> callbacks;
     std::unique_ptr<rivulet::FreeBodies> free;
     std::unique_ptr<rivulet::FluidWorld> world;

@@ -7,7 +7,7 @@ import sys
 
 HEADERS = [
     "engine/core/result.h", "engine/core/log.h", "engine/core/jobs.h", "engine/compute/device.h", "engine/compute/device_cpu.h", "engine/gpu/lost_context.h", "engine/gpu/load.h", "engine/gpu/host_state.h",
-    "engine/render/frame_view.h", "engine/core/mesh_view.h", "fluid/voxel/voxel_field.h", "fluid/sim/solids/solids.h", "fluid/sim/solids/bodies.h",
+    "engine/render/frame_view.h", "engine/core/mesh_view.h", "fluid/voxel/voxel_field.h", "fluid/voxel/field_bake.h", "fluid/sim/solids/solids.h", "fluid/sim/solids/bodies.h",
     "fluid/sim/solids/probes.h",
     "fluid/sim/world/fluid_params.h", "fluid/sim/forces/force_*.h", "fluid/sim/methods/method_pbf.h",
     "fluid/sim/methods/method_dfsph.h", "fluid/sim/sources/block.h", "fluid/sim/sources/emitter.h", "fluid/sim/forces/force.h", "fluid/sim/world/stats.h", "fluid/sim/world/particle_view.h", "fluid/sim/world/fluid_world.h",

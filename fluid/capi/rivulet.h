@@ -23,10 +23,11 @@
  * current. Contexts are independent: different threads may use different ones at the same time. Snapshots can be drawn while another thread
  * steps their world: see rivulet_snapshot.h.
  *
- * Callbacks (log, bodies) run on the calling thread, before the call returns; log is called at the end of the call. A callback that calls
- * back into the same context gets RIVULET_BAD_INPUT. A C++ callback may throw: the call then goes on and returns RIVULET_FAILED, with the
- * exception's text; what log throws is dropped. A callback may be left by longjmp on the same thread: the next call ends the unfinished
- * one, and a world that was being stepped, reset or created is incomplete (see rivulet_world_step); a little memory is lost.
+ * Callbacks (log, bodies, jobs, memory) run on the calling thread, before the call returns; log is called at the end of the call. A
+ * callback that calls back into the same context gets RIVULET_BAD_INPUT. A C++ callback may throw: the call then goes on and returns
+ * RIVULET_FAILED, with the exception's text; what log throws is dropped. A callback may be left by longjmp on the same thread: the next
+ * call ends the unfinished one, and a world that was being stepped, reset or created is incomplete (see rivulet_world_step); a little
+ * memory is lost.
  *
  * Bounds: what is not finite or absurd is RIVULET_BAD_INPUT. Values of a scene have the ranges of docs/parameters.md, and blocks, emitters,
  * bodies and particles lie in the box. Lengths and positions are at most 1e6 m, speeds of walls, bodies and particles at most 1e6 m/s,

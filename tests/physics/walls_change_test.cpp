@@ -30,16 +30,16 @@ void run(FluidWorld& world, int frames, std::span<const Pose> poses = {}) {
     for (int k = 0; k < frames; ++k) world.step({.poses = poses}, kFrame);
 }
 
-std::vector<vec4> positions(const FluidWorld& world) { return readParticles(world).position; }
+std::vector<vec4> waterOf(const FluidWorld& world) { return readParticles(world).position; }
 dvec3 centre(const FluidWorld& world) {
     dvec3 sum(0.0);
-    const std::vector<vec4> all = positions(world);
+    const std::vector<vec4> all = waterOf(world);
     for (const vec4& p : all) sum += dvec3(p);
     return sum / static_cast<double>(all.size());
 }
 float farthest(const FluidWorld& world) {
     float x = 0;
-    for (const vec4& p : positions(world)) x = std::max(x, p.x);
+    for (const vec4& p : waterOf(world)) x = std::max(x, p.x);
     return x;
 }
 
@@ -76,7 +76,7 @@ TEST(WallsChange, AnAddedWallHoldsTheWater) {
         run(*world, 74);
         run(*always, 80);
         EXPECT_LT(farthest(*world), 0.6F);
-        EXPECT_EQ(positions(*world).size(), positions(*always).size());
+        EXPECT_EQ(waterOf(*world).size(), waterOf(*always).size());
         // Both are at rest, and as high.
         EXPECT_NEAR(centre(*world).y, centre(*always).y, 0.1 * double{kSpacing});
         EXPECT_NEAR(centre(*world).x, centre(*always).x, 0.3 * double{kSpacing});
@@ -96,7 +96,7 @@ TEST(WallsChange, TheSameWallsChangeNothing) {
         run(*other, 1);
         ASSERT_TRUE(other->setWalls(solids, other->poses()));
     }
-    EXPECT_TRUE(positions(*world) == positions(*other));
+    EXPECT_TRUE(waterOf(*world) == waterOf(*other));
 }
 
 // A wall too far away to act is added while a paddle moves: the run is that of a world which has both from the start.
@@ -120,7 +120,7 @@ TEST(WallsChange, OtherWallsKeepTheirMotion) {
         }
         run(*late, 1, std::span(poses).first(k < 20 ? 1 : 2));
     }
-    EXPECT_TRUE(positions(*both) == positions(*late));
+    EXPECT_TRUE(waterOf(*both) == waterOf(*late));
     // And the paddle alone again, which the other order of removal must not confuse.
     ASSERT_TRUE(
         late->setWalls({.rigid = {{&paddle, start}}}, late->poses().size() == 2 ? std::span(late->poses()).first(1) : late->poses()));
@@ -130,7 +130,7 @@ TEST(WallsChange, OtherWallsKeepTheirMotion) {
         run(*both, 1, std::span(poses).first(1));
         run(*late, 1, std::span(poses).first(1));
     }
-    EXPECT_TRUE(positions(*both) == positions(*late));
+    EXPECT_TRUE(waterOf(*both) == waterOf(*late));
     late->reset();
     EXPECT_EQ(late->poses()[0].position, start.position);
 }
@@ -143,10 +143,10 @@ TEST(WallsChange, WaterInsideAnAddedWallIsRemovedAndCounted) {
     for (const bool remove : {true, false}) {
         auto world = makeWorld(*device, p);
         run(*world, 10);
-        const size_t before = positions(*world).size();
+        const size_t before = waterOf(*world).size();
         ASSERT_TRUE(world->setWalls({.rigid = {{&block, {}}}}, {}, remove));
         run(*world, 30);
-        const std::vector<vec4> after = positions(*world);
+        const std::vector<vec4> after = waterOf(*world);
         size_t inside = 0;
         for (const vec4& at : after) inside += block.inside(vec3(at)) ? 1 : 0;
         const double particle = std::pow(double{kSpacing}, 3), volume = 0.2 * 0.2 * 0.15;
@@ -167,7 +167,7 @@ TEST(WallsChange, WhatDoesNotFitIsRefused) {
     FluidParams p = tank();
     auto world = makeWorld(*device, p);
     run(*world, 2);
-    const std::vector<vec4> before = positions(*world);
+    const std::vector<vec4> before = waterOf(*world);
     const Pose nowhere{vec3(std::nanf("")), {}};
     EXPECT_FALSE(world->setWalls({.rigid = {{&wall, {}}}}, std::span(&nowhere, 1)));
     EXPECT_FALSE(world->setWalls({.rigid = {{&wall, {}}}}, std::vector<Pose>(2)));
@@ -175,11 +175,11 @@ TEST(WallsChange, WhatDoesNotFitIsRefused) {
     device->limitMemory(device->bytesAllocated());
     EXPECT_FALSE(world->setWalls({.rigid = {{&wall, {}}}}));
     device->limitMemory(SIZE_MAX);
-    EXPECT_TRUE(positions(*world) == before);
+    EXPECT_TRUE(waterOf(*world) == before);
     auto plain = makeWorld(*device, p);
     run(*plain, 12);
     run(*world, 10);
-    EXPECT_TRUE(positions(*world) == positions(*plain)) << "nothing was changed by what was refused";
+    EXPECT_TRUE(waterOf(*world) == waterOf(*plain)) << "nothing was changed by what was refused";
     p.box.periodicX = p.box.periodicY = p.box.periodicZ = true;
     auto endless = makeWorld(*device, p);
     EXPECT_FALSE(endless->setWalls({.rigid = {{&wall, {}}}}));
@@ -193,7 +193,7 @@ TEST(SourcesChange, EmittersAndSinksComeAndGo) {
     auto world = makeWorld(*device, p);
     run(*world, 10);
     const double particle = std::pow(double{kSpacing}, 3);
-    const auto volume = [&] { return static_cast<double>(positions(*world).size()) * particle; };
+    const auto volume = [&] { return static_cast<double>(waterOf(*world).size()) * particle; };
     const double start = volume();
     Sources sources;
     EmitterParams jet;

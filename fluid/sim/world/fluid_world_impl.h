@@ -109,7 +109,7 @@ struct FluidWorld::Impl {
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
     Status replaceSources(const Sources& next);
-    Status removeInside();  // particles inside a wall
+    Status removeInside();   // particles inside a wall
     Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     Status checkStart() const;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # run.sh BUILD: rivulet.h from C, against an install prefix and with pkg-config alone. Of a build with sanitizers, so are the programs: what
-# leaks or reaches beyond its memory fails.
+# leaks, reaches beyond its memory or races fails.
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 work="$(mktemp -d)"
@@ -25,6 +25,18 @@ cc=(cc -O1)
 if nm -D --undefined-only "$library" | grep -q __asan_init; then
     cc=(clang -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fsanitize-link-c++-runtime -Wl,--no-as-needed -lstdc++)
     export ASAN_OPTIONS=quarantine_size_mb=2  # what is freed and kept for the report would look like growth
+fi
+if nm -D --undefined-only "$library" | grep -q __tsan_init; then
+    # What has several threads; the others would take hours.
+    export TSAN_OPTIONS="suppressions=$here/../../checks/races.supp"
+    read -ra flags <<<"$(pkg-config --cflags --libs rivulet egl gl) -Wl,-rpath,$(dirname "$library") -lm -lpthread -lstdc++"
+    for program in jobs overlap; do
+        cc -O1 -g -fsanitize=thread -std=c11 $warnings "$here/$program.c" "${flags[@]}" -o "$work/$program"
+        status=0
+        "$work/$program" || status=$?
+        [ $status -eq 0 ] || [ $status -eq 77 ] || exit $status
+    done
+    exit 0
 fi
 # And of what it shows, nothing but rivulet.h: a host may have names of its own.
 others="$(nm -D --defined-only "$library" | awk '{ print $3 }' | grep -v '^rivulet_' || true)"

@@ -27,11 +27,11 @@ _Unwind_Reason_Code look(_Unwind_Context* context, void* to) {
     return _URC_NO_REASON;
 }
 
-void tell(Callback& callback, const HostLog& log, rivulet_level level, const std::string& sentence) {
+void run(Callback& callback, const std::function<void()>& call) {
     const CallbackScope scope(callback);
     try {
-        log.function(log.user, level, sentence.c_str());
-    } catch (...) {  // NOLINT(bugprone-empty-catch): an exception of the log function has nowhere to go
+        call();
+    } catch (...) {  // NOLINT(bugprone-empty-catch): an exception of the host's function has nowhere to go
     }
 }
 
@@ -53,10 +53,14 @@ bool Callback::left() const {
 void HostLog::add(rivulet_level level, std::string sentence) {
     if (function == nullptr) return;
     try {
-        const std::scoped_lock lock(mutex_);
-        waiting_.emplace_back(level, std::move(sentence));
+        later([f = function, u = user, level, text = std::move(sentence)] { f(u, level, text.c_str()); });
     } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): a sentence less, and the call goes on
     }
+}
+
+void HostLog::later(std::function<void()> call) {
+    const std::scoped_lock lock(mutex_);
+    waiting_.push_back(std::move(call));
 }
 
 void HostLog::deliver(Callback& callback) {
@@ -64,10 +68,10 @@ void HostLog::deliver(Callback& callback) {
     for (;;) {
         std::unique_lock lock(mutex_);
         if (waiting_.empty()) return;
-        const auto [level, sentence] = std::move(waiting_.front());
+        const std::function<void()> call = std::move(waiting_.front());
         waiting_.pop_front();
         lock.unlock();
-        tell(callback, *this, level, sentence);
+        run(callback, call);
     }
 }
 

@@ -87,7 +87,7 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (Status can = ready(*world->context, Needs::drawing); !can) return can;
         return drawWater(*world->context, world->params.look, world->params.fluid.liquid, view, target, [&] {
             const CallScope scope(*world->context, Needs::drawing);
-            return world->upload.view(*world->world, world->params.look);
+            return world->upload.view(*world->world, world->params.look, world->fallingDrops, world->hangingDrops);
         });
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);

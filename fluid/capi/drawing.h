@@ -17,6 +17,9 @@ Status drawable(const rivulet_context& context);
 Status drawWater(rivulet_context& context, const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
                  const rivulet_target* target, const std::function<Result<FluidView>()>& fluid);
 
+// Adds the world as it is to its recording, if there is one. Error (failed): as RecordingWriter::add; the recording has then ended.
+Status recordFrame(rivulet_world& world);
+
 // For rivulet_buffers: all particles in one order, velocities and no normals.
 FluidLookParams plainLook(FluidLookParams look);
 rivulet_buffers buffersOf(const FluidView& fluid);

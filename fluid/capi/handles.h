@@ -13,8 +13,11 @@
 #include "fluid/capi/callbacks.h"
 #include "fluid/capi/rivulet.h"
 #include "fluid/capi/walls.h"
+#include "fluid/flow/air_drops.h"
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
+#include "fluid/flow/placed_flow.h"
+#include "fluid/io/recording.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_snapshot.h"
 #include "fluid/render/fluid_upload.h"
@@ -77,6 +80,15 @@ struct rivulet_world {
     std::unique_ptr<rivulet::FluidWorld> world;
     rivulet::FluidUpload upload;
     double deviceMs = 0;  // the context's, when this was last stepped
+    // Of rivulet_world_step_skins: the drops in the air, the skins they fall from, s since the first such step.
+    rivulet::AirDrops air;
+    std::vector<const rivulet_skin*> skins;                 // compared only: a host may have destroyed one
+    std::vector<rivulet::vec4> fallingDrops, hangingDrops;  // as FluidView::drops and pendants
+    double airTime = 0;
+    bool exchanges = false;  // its water takes drops in
+    std::optional<rivulet::RecordingWriter> recording;
+    rivulet::RecordedFrame recorded;                                                 // memory of the last frame
+    std::shared_ptr<rivulet_world*> alive = std::make_shared<rivulet_world*>(this);  // for answers that come later
 };
 
 struct rivulet_snapshot {
@@ -86,6 +98,8 @@ struct rivulet_snapshot {
     std::string liquid;
     rivulet::FluidUpload upload;
     std::atomic<bool> used = false;  // a call fills or draws it
+    std::optional<rivulet::RecordingReader> recording;
+    std::string recordingPath;
 };
 
 struct rivulet_skin {
@@ -98,4 +112,12 @@ struct rivulet_skin {
     rivulet::Buffer moved;                // a vec4 a vertex, copied from the host's buffer; empty before the first such step
     std::vector<rivulet::vec4> readBack;  // the same on its way to a device without OpenGL
     bool interrupted = false;             // its last step was: the drops are not valid any more
+    // The skin's frame -> the world, before the present or last step and after it; in between it moves uniformly.
+    struct Motion {
+        rivulet::dmat4 before{1.0}, after{1.0};
+        double begin = 0, seconds = 0;  // s
+        rivulet::dmat4 at(double time) const;
+    } motion;
+    uint64_t steps = 0;
+    std::optional<rivulet::PlacedFlow> placed;
 };

@@ -23,9 +23,14 @@ typedef struct rivulet_mesh {
     const float* uvs;   /* 2 a vertex; for skins */
     float friction;     /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
     float restitution;  /* of a wall: 0 to 1; negative: that of fluid.collision */
-    uint32_t moves;     /* of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 0: stands still */
+    /* Of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 2: deforms with rivulet_inputs.shapes, of those
+       that are given when the world is created; 0: stands still. */
+    uint32_t moves;
     int32_t resolution; /* of a wall: voxels along its longest side; 0: voxels of a quarter of the fluid's spacing */
     rivulet_pose pose;  /* of a wall that moves: at t = 0 */
+    /* m, the low and the high corner of a box in which a wall that deforms always is; voxels are kept for all of it, `resolution` of them
+       along its longest side. All 0: the box of its positions, longer by half of its longest side in each direction. */
+    float reach_low[3], reach_high[3];
 } rivulet_mesh;
 
 /* A floating body, coupled to the fluid both ways. The origin of its frame is its centre of mass, its axes are the principal axes. */
@@ -72,6 +77,9 @@ typedef struct rivulet_world_options {
     const float* particles;
     const float* particle_velocities; /* m/s, 3 each; NULL: at rest */
     size_t particles_count;
+    /* m^3 of water that drops of skins are expected to bring in 10 s: memory is reserved for it, see rivulet_world_step_skins. 0: the
+       world's water and its skins do not mix. */
+    double skins_bring;
 } rivulet_world_options;
 
 typedef struct rivulet_inputs {
@@ -80,6 +88,10 @@ typedef struct rivulet_inputs {
     const rivulet_pose* poses; /* of the walls that move, in the order of their ids, at the end of the frame; NULL: as given before; after a
                                   reset those of t = 0, after a restore those that were saved */
     size_t poses_count;
+    /* Of the walls that deform, in the order of their ids: the positions of all vertices at the end of the frame, m, in the world's frame; an
+       entry that is NULL, or NULL itself: as before. Within the frame vertices move uniformly. */
+    const float* const* shapes;
+    size_t shapes_count;
 } rivulet_inputs;
 
 typedef struct rivulet_stats {

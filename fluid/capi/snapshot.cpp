@@ -1,7 +1,12 @@
-// rivulet.h: snapshots.
+// rivulet.h: snapshots and recordings.
+#include <fmt/format.h>
+
+#include <utility>
+
 #include "fluid/capi/call.h"
 #include "fluid/capi/drawing.h"
 #include "fluid/capi/versioned.h"
+#include "fluid/io/world_frame.h"
 
 namespace rivulet::capi {
 namespace {
@@ -41,6 +46,15 @@ rivulet_status whileStepping(rivulet_snapshot* snapshot, rivulet_error* why, con
 }
 
 }  // namespace
+
+Status recordFrame(rivulet_world& world) {
+    if (!world.recording) return ok();
+    frameOf(*world.world, world.recorded);
+    const Status added = world.recording->add(world.recorded);
+    if (!added) world.recording.reset();
+    return added;
+}
+
 }  // namespace rivulet::capi
 
 using namespace rivulet;
@@ -72,6 +86,51 @@ rivulet_status rivulet_world_snapshot(rivulet_world* world, rivulet_snapshot* sn
         snapshot->look = world->params.look;
         snapshot->liquid = world->params.fluid.liquid;
         return snapshot->taken.take(*world->world);
+    });
+}
+
+rivulet_status rivulet_world_record(rivulet_world* world, const char* path, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        std::optional<RecordingWriter>& recording = world->recording;
+        if (recording) {
+            if (path != nullptr) return badInput("the world is being recorded: end that with path NULL first");
+            const Status closed = recording->frames() > 0 ? recording->close() : ok();
+            recording.reset();
+            return closed;
+        }
+        if (path == nullptr) return badInput("path is NULL, and the world is not being recorded");
+        Result<RecordingWriter> writer = RecordingWriter::open(path, "");
+        if (!writer) return writer.error();
+        recording.emplace(std::move(*writer));
+        return ok();
+    });
+}
+
+rivulet_status rivulet_snapshot_replay(rivulet_snapshot* snapshot, const rivulet_world* world, const char* path, size_t frame,
+                                       rivulet_recorded* recorded, rivulet_error* why) {
+    return with(snapshot, why, Needs::memory, [&]() -> Status {
+        if (world == nullptr) return badInput("world is NULL: the frame has its look");
+        if (path == nullptr) return badInput("path is NULL");
+        const Claim mine(snapshot->used);
+        if (!mine.mine()) return inUse();
+        if (!snapshot->recording || snapshot->recordingPath != path) {
+            Result<RecordingReader> reader = RecordingReader::open(path);
+            if (!reader) return reader.error();
+            snapshot->recording.emplace(std::move(*reader));
+            snapshot->recordingPath = path;
+        }
+        RecordingReader& reader = *snapshot->recording;
+        if (frame >= reader.frames())
+            return badInput(fmt::format("{} has {} frames: give a frame from 0 to {}", path, reader.frames(), reader.frames() - 1));
+        const size_t limit = snapshot->context->memoryLimit;
+        Result<RecordedFrame> read = limit > 0 ? reader.read(frame, limit) : reader.read(frame);
+        if (!read) return read.error();
+        const double time = read->time;
+        snapshot->look = world->params.look;
+        snapshot->liquid = world->params.fluid.liquid;
+        snapshot->taken.take(std::move(*read), world->world->particles().viscosity);
+        if (recorded == nullptr) return ok();
+        return writeStruct(rivulet_recorded{.size = 0, .frames = reader.frames(), .time = time}, recorded, "rivulet_recorded", "recorded");
     });
 }
 

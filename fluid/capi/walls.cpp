@@ -54,7 +54,8 @@ Result<Walls::Wall> Walls::read(const rivulet_mesh& wall, const std::string& nam
     Result<HostMesh> mesh = meshOf(wall, name);
     if (!mesh) return mesh.error();
     Wall made;
-    made.moves = wall.moves != 0;
+    if (wall.moves > 2) return badInput(fmt::format("{}.moves is {}: use 0, 1 or 2", name, wall.moves));
+    made.moves = wall.moves == 1;
     made.resolution = wall.resolution;
     if (made.moves) {
         const Result<Pose> pose = soundPose(wall.pose, name + ".pose");
@@ -80,6 +81,25 @@ std::vector<BakedMesh> Walls::standing(int& finest) const {
         finest = std::max(finest, w.resolution);
     }
     return meshes;
+}
+
+Result<DeformingField> Walls::deformingOf(const Wall& wall, const rivulet_mesh& given) const {
+    Bounds reach{vectorOf(given.reach_low), vectorOf(given.reach_high)};
+    if (!isSet(given.reach_low) && !isSet(given.reach_high)) {
+        reach = {};
+        for (const vec3& p : wall.mesh.positions) reach.add(p);
+        const vec3 size = reach.size();
+        const vec3 more(0.5F * std::max({size.x, size.y, size.z}));
+        reach = {reach.min - more, reach.max + more};
+    }
+    if (!isWithin(reach.min, kMostDistance) || !isWithin(reach.max, kMostDistance) || !glm::all(glm::lessThan(reach.min, reach.max)))
+        return badInput(fmt::format("reach_low and reach_high are no box of finite corners, at most {} m from 0", kMostDistance));
+    std::vector<BakedMesh> box(1);
+    box[0].positions = {reach.min, reach.max};
+    VoxelFieldOptions options = optionsFor(box, given.resolution);
+    options.surfaces = std::span(&wall.surface, 1);
+    const MeshView view{.positions = wall.mesh.positions, .indices = wall.mesh.indices, .normals = {}, .uvs = {}};
+    return DeformingField::create(std::span(&view, 1), reach, options);
 }
 
 Status Walls::begin(const rivulet_world_options& o, float spacing, size_t memoryLimit, const Jobs& jobs) {
@@ -108,7 +128,14 @@ Status Walls::begin(const rivulet_world_options& o, float spacing, size_t memory
         at += input->size;
         Result<Wall> wall = read(*input, name, o.walls_count <= kMostSurfaces);
         if (!wall) return wall.error();
-        wall->together = !wall->moves;
+        wall->together = input->moves == 0;
+        if (input->moves == 2) {
+            Result<DeformingField> field = deformingOf(*wall, *input);
+            if (!field) return Error{fmt::format("{}: {}", name, field.error().message), field.error().fault};
+            wall->deforming = std::make_unique<DeformingField>(std::move(*field));
+            wall->shape = std::move(wall->mesh.positions);
+            wall->mesh = {};
+        }
         if (wall->moves) {
             auto field = bakeNow(std::span(&wall->mesh, 1), wall->resolution);
             if (!field) return Error{fmt::format("{}: {}", name, field.error().message), field.error().fault};
@@ -136,6 +163,10 @@ Solids Walls::solids() const {
     solids.colliders.resize(next_);
     for (const Wall& w : all_) {
         if (w.together && standing_ != nullptr) solids.colliders[w.id] = {ProbeOn::still, w.surface};
+        if (w.deforming) {
+            solids.colliders[w.id] = {ProbeOn::deforming, static_cast<uint32_t>(solids.deforming.size())};
+            solids.deforming.push_back(w.deforming.get());
+        }
         if (!w.acts()) continue;
         solids.colliders[w.id] = {ProbeOn::rigid, static_cast<uint32_t>(solids.rigid.size())};
         solids.rigid.push_back({w.field.get(), w.start});
@@ -146,6 +177,7 @@ Solids Walls::solids() const {
 Result<uint32_t> Walls::add(const rivulet_mesh& given) {
     const Result<rivulet_mesh> input = readStruct(&given, "rivulet_mesh", "wall");
     if (!input) return input.error();
+    if (input->moves == 2) return badInput("wall.moves is 2: a wall that deforms is given when the world is created");
     Result<Wall> wall = read(*input, "wall", false);
     if (!wall) return wall.error();
     std::vector<BakedMesh> mesh;
@@ -178,7 +210,7 @@ Status Walls::remove(FluidWorld& world, uint32_t id) {
     const auto at = std::find_if(all_.begin(), all_.end(), [id](const Wall& w) { return w.id == id && !w.leaves; });
     if (at == all_.end()) return badInput(fmt::format("there is no wall {}", id));
     if (!at->together) {
-        const bool acted = at->acts();
+        const bool acted = at->acts() || at->deforming != nullptr;
         Wall gone = std::move(*at);  // its field is in use until the world has others
         const auto place = all_.erase(at);
         if (!acted) return ok();
@@ -280,14 +312,36 @@ Walls::Targets Walls::targets() const {
     for (const Wall& w : all_) {
         if (w.acts()) targets.poses.push_back(w.now);
         if (w.moves) targets.moving.push_back(w.now);
+        if (w.deforming) targets.shapes.push_back(w.shape);
     }
     return targets;
+}
+
+size_t Walls::deforming() const {
+    return static_cast<size_t>(std::count_if(all_.begin(), all_.end(), [](const Wall& w) { return w.deforming != nullptr; }));
+}
+
+void Walls::deform(size_t which, const float* positions) {
+    for (Wall& w : all_) {
+        if (!w.deforming || which-- > 0) continue;
+        for (size_t k = 0; k < w.shape.size(); ++k) w.shape[k] = vectorOf(positions + 3 * k);
+        return;
+    }
+}
+
+void Walls::moveBack(const Targets& before) {
+    move(before.moving);
+    size_t k = 0;
+    for (Wall& w : all_)
+        if (w.deforming) w.shape = before.shapes[k++];
 }
 
 void Walls::follow(const std::vector<Pose>& poses) {
     size_t k = 0;
     for (Wall& w : all_)
         if (w.acts()) w.now = poses[k++];
+    for (Wall& w : all_)
+        if (w.deforming) w.shape.assign(w.deforming->positions().begin(), w.deforming->positions().end());
 }
 
 }  // namespace rivulet::capi

@@ -12,6 +12,7 @@
 #include "engine/core/result.h"
 #include "fluid/capi/rivulet.h"
 #include "fluid/sim/world/fluid_world.h"
+#include "fluid/voxel/deforming_field.h"
 #include "fluid/voxel/field_bake.h"
 
 namespace rivulet::capi {
@@ -40,9 +41,13 @@ class Walls {
     // Of solids().rigid, and of all that move.
     struct Targets {
         std::vector<Pose> poses, moving;
+        std::vector<std::vector<vec3>> shapes;  // m, of solids().deforming
     };
+    size_t deforming() const;  // that deform
+    // Of one of these: m, 3 floats for each of its vertices.
+    void deform(size_t which, const float* positions);
     Targets targets() const;
-    void moveBack(const Targets& before) { move(before.moving); }
+    void moveBack(const Targets& before);
     void follow(const std::vector<Pose>& poses);  // of solids().rigid: where a reset or a restored state has put them
 
   private:
@@ -55,6 +60,8 @@ class Walls {
         BakedMesh mesh;  // of those baked together
         Pose start, now;
         std::unique_ptr<VoxelField> field;
+        std::unique_ptr<DeformingField> deforming;
+        std::vector<vec3> shape;  // m, of one that deforms: the last requested
         std::unique_ptr<FieldBake> bake;
         std::string failure;
         bool acts() const { return field != nullptr; }
@@ -63,6 +70,7 @@ class Walls {
     // A number for these values. Nothing: there are too many.
     std::optional<uint8_t> surfaceFor(const Surface& surface, bool own);
     VoxelFieldOptions optionsFor(std::span<const BakedMesh> meshes, int resolution) const;
+    Result<DeformingField> deformingOf(const Wall& wall, const rivulet_mesh& given) const;
     Result<Wall> read(const rivulet_mesh& wall, const std::string& name, bool ownSurface);
     std::vector<BakedMesh> standing(int& finest) const;
     Status apply(FluidWorld& world);

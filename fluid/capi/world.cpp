@@ -7,6 +7,7 @@
 #include "engine/core/json.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
+#include "fluid/capi/drawing.h"
 #include "fluid/capi/versioned.h"
 #include "fluid/capi/walls.h"
 #include "fluid/sim/solids/body_shapes.h"
@@ -175,6 +176,11 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     Result<Sources> sources = sourcesOf(w.params);
     if (!sources) return sources.error();
     if (Status added = addParticles(o, *sources); !added) return added;
+    constexpr double kMostBrought = 1.0e3;  // m^3
+    if (!(o.skins_bring >= 0) || o.skins_bring > kMostBrought)
+        return badInput(fmt::format("skins_bring is {} m^3: give 0 to {}", o.skins_bring, kMostBrought));
+    sources->expectedDeposit = o.skins_bring;
+    w.exchanges = o.skins_bring > 0;
     for (size_t k = 0; k < w.params.fluid.blocks.size(); ++k)
         if (w.params.fluid.blocks[k].shape == "mesh")
             return badInput(fmt::format("fluid.blocks[{}].shape is mesh: use another shape or particles, a mesh needs a scene file", k));
@@ -211,7 +217,12 @@ rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_worl
     return status;
 }
 
-void rivulet_world_destroy(rivulet_world* world) { destroy(world); }
+void rivulet_world_destroy(rivulet_world* world) {
+    rivulet_error why;
+    if (world != nullptr && world->recording && rivulet_world_record(world, nullptr, &why) != RIVULET_OK)
+        silently([&] { world->context->log.error(why.message); });
+    destroy(world);
+}
 
 rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
@@ -222,6 +233,9 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         const size_t moving = world->walls.moving();
         if (in.poses != nullptr && in.poses_count != moving)
             return badInput(fmt::format("{} poses were given for {} walls that move: give one for each", in.poses_count, moving));
+        const size_t deforming = world->walls.deforming();
+        if (in.shapes != nullptr && in.shapes_count != deforming)
+            return badInput(fmt::format("{} shapes were given for {} walls that deform: give one for each", in.shapes_count, deforming));
         FluidInputs to;
         if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
         std::vector<Pose> poses;
@@ -233,8 +247,12 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         for (const std::string& wrong : world->walls.arrive(*world->world)) world->context->log.error(wrong);
         const Walls::Targets before = world->walls.targets();
         if (in.poses != nullptr) world->walls.move(poses);
+        for (size_t k = 0; in.shapes != nullptr && k < deforming; ++k)
+            if (in.shapes[k] != nullptr) world->walls.deform(k, in.shapes[k]);
         const Walls::Targets targets = world->walls.targets();
         to.poses = targets.poses;
+        const std::vector<std::span<const vec3>> shapes(targets.shapes.begin(), targets.shapes.end());
+        to.shapes = shapes;
         if (Status sound = world->world->checkInputs(to, seconds); !sound) {
             world->walls.moveBack(before);
             return sound;
@@ -248,6 +266,7 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (world->world->interrupted()) return failed("the step was interrupted: end the stop, then reset or restore the world");
         if (context.device->stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
         if (Status stepped = world->world->lastStep(); !stepped) return stepped;
+        if (Status recorded = recordFrame(*world); !recorded) return recorded;
         return thrown(*world);
     });
 }

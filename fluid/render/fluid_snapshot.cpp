@@ -1,6 +1,7 @@
 #include "fluid/render/fluid_snapshot.h"
 
 #include <tuple>
+#include <utility>
 
 #include "fluid/io/world_frame.h"
 #include "fluid/sim/world/fluid_world.h"
@@ -23,6 +24,14 @@ Status FluidSnapshot::take(const FluidWorld& world) {
     }
     taken_ = true;
     return ok();
+}
+
+void FluidSnapshot::take(RecordedFrame frame, float viscosity) {
+    frame_ = std::move(frame);
+    viscosity_ = viscosity;
+    wetSurface_ = nullptr;
+    onGpu_ = false;
+    taken_ = true;
 }
 
 Status FluidSnapshot::takeOnGpu(const FluidWorld& world) {

@@ -22,6 +22,8 @@ class FluidSnapshot {
   public:
     // Copies the world as it is now, in place of what it held. Error (failed): out of memory; the snapshot is empty then.
     Status take(const FluidWorld& world);
+    // Holds a recorded frame instead. viscosity: Pa s, of its liquid.
+    void take(RecordedFrame frame, float viscosity);
     bool empty() const { return !taken_; }
     double time() const { return frame_.time; }  // s, simulated
 

@@ -131,6 +131,57 @@ static void a_snapshot_stays(rivulet_context* context) {
     rivulet_snapshot_destroy(snapshot);
 }
 
+/* A recording shows each frame as it was drawn, in any order, in another world's look; a file that ends early shows what it has. */
+static void a_recording_shows_it_again(rivulet_context* context, const char* folder) {
+    enum { RECORDED = 6 };
+    static picture drawn[RECORDED], seen;
+    char path[512], none[512];
+    snprintf(path, sizeof path, "%s/%p.rrec", folder, (void*)context);
+    snprintf(none, sizeof none, "%s/no folder/run.rrec", folder);
+    const rivulet_world_options o = {.size = sizeof o, .json = kScene};
+    rivulet_world* world = NULL;
+    rivulet_snapshot* snapshot = NULL;
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    DONE(rivulet_snapshot_create(context, &snapshot, &why));
+    REFUSED(rivulet_world_record(world, NULL, &why), "not being recorded");
+    CHECK(rivulet_world_record(world, none, &why) == RIVULET_FAILED && strstr(why.message, "folder does not exist") != NULL);
+    DONE(rivulet_world_record(world, path, &why));
+    REFUSED(rivulet_world_record(world, path, &why), "is being recorded");
+    for (int frame = 0; frame < RECORDED; ++frame) {
+        DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+        clear();
+        DONE(rivulet_world_draw(world, &kFrom, &to, &why));
+        read_picture(drawn[frame]);
+    }
+    DONE(rivulet_world_record(world, NULL, &why));
+    DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why)); /* is not recorded */
+    for (size_t k = 0; k < RECORDED; ++k) {
+        const size_t frame = (5 * k + 3) % RECORDED;
+        rivulet_recorded r = {.size = sizeof r};
+        DONE(rivulet_snapshot_replay(snapshot, world, path, frame, &r, &why));
+        CHECK(r.frames == RECORDED && r.time > (double)frame / 60 && r.time < (double)(frame + 2) / 60);
+        clear();
+        DONE(rivulet_snapshot_draw(snapshot, &kFrom, &to, &why));
+        read_picture(seen);
+        CHECK(differ(drawn[frame], seen) == 0);
+    }
+    REFUSED(rivulet_snapshot_replay(snapshot, world, path, RECORDED, NULL, &why), "give a frame from 0 to 5");
+    REFUSED(rivulet_snapshot_replay(snapshot, world, none, 0, NULL, &why), "cannot be read");
+    REFUSED(rivulet_snapshot_replay(snapshot, NULL, path, 0, NULL, &why), "world is NULL");
+    DONE(rivulet_world_record(world, path, &why));
+    DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+    rivulet_world_destroy(world); /* ends it */
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    rivulet_snapshot* again = NULL;
+    rivulet_recorded r = {.size = sizeof r};
+    DONE(rivulet_snapshot_create(context, &again, &why));
+    DONE(rivulet_snapshot_replay(again, world, path, 0, &r, &why));
+    CHECK(r.frames == 1);
+    rivulet_snapshot_destroy(again);
+    rivulet_snapshot_destroy(snapshot);
+    rivulet_world_destroy(world);
+}
+
 static rivulet_context* with_gl(const char* backend) {
     rivulet_context* context = NULL;
     const rivulet_context_options o = {.size = sizeof o, .find = eglGetProcAddress, .backend = backend};
@@ -144,14 +195,16 @@ static void* step_there(void* world) {
     return rivulet_world_step(world, NULL, 1.0 / 60, &wrong) == RIVULET_BAD_INPUT && strstr(wrong.message, "not current") ? world : NULL;
 }
 
-int main(void) {
-    if (!make_current()) return 77;
+int main(int argc, char** argv) {
+    if (!make_current() || argc < 2) return 77;
     to.framebuffer = make_target(WIDTH, HEIGHT);
     rivulet_context* cpu = with_gl("cpu");
     rivulet_context* gl = with_gl("gl");
     a_worker_steps(cpu);
     a_snapshot_stays(cpu);
     a_snapshot_stays(gl);
+    a_recording_shows_it_again(cpu, argv[1]);
+    a_recording_shows_it_again(gl, argv[1]);
     const rivulet_world_options o = {.size = sizeof o, .json = kScene};
     rivulet_world* world = NULL;
     rivulet_snapshot* snapshot = NULL;

@@ -48,7 +48,7 @@ for name in $shown; do
     grep -qx "$name" <<<"$declared" || { echo "$name is not in rivulet.h"; exit 1; }
 done
 
-for program in main faults jobs walls gl many lost overlap; do
+for program in main couple faults jobs walls gl many lost overlap; do
     packages=rivulet
     case $program in gl|many|lost|overlap) packages="rivulet egl gl" ;; esac
     read -ra flags <<<"$(pkg-config --cflags --libs $packages)"
@@ -59,12 +59,13 @@ cxx=(c++ -O1)
 [ "${cc[0]}" = cc ] || cxx=(clang++ "${cc[@]:1}")
 "${cxx[@]}" -std=c++17 $warnings "$here/throws.cpp" "${flags[@]}" -Wl,-rpath,"$(dirname "$library")" -o "$work/throws"
 "$work/main" "$work"
+"$work/couple"
 "$work/faults"
 "$work/throws"
 "$work/jobs"
 "$work/walls"
 # Loaded and unloaded by dlopen. A sanitizer's own library cannot be loaded late.
-runs=(gl many lost overlap)
+runs=(gl many lost "overlap $work")
 if [ "${cc[0]}" = cc ]; then
     read -ra flags <<<"$(pkg-config --cflags rivulet) $(pkg-config --cflags --libs egl gl)"
     "${cc[@]}" -std=c11 $warnings "$here/unload.c" "${flags[@]}" -ldl -lpthread -o "$work/unload"

@@ -1,4 +1,4 @@
-// Device: runs kernels on the CPU (oneTBB), in OpenGL compute shaders or in OpenCL.
+// Device: runs kernels on the CPU (engine/core/jobs.h), in OpenGL compute shaders or in OpenCL.
 //
 // Threading: a Device and everything made from it may be used by one thread at a time (gl: a thread on which its context is current), but
 // not always the same one. Calls are in order: a dispatch sees the results of earlier dispatches and writes. read() and finish() wait

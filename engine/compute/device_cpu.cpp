@@ -1,7 +1,6 @@
 #include "engine/compute/device_cpu.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -126,8 +125,10 @@ uintptr_t placeIn(const Block& block) {
 
 struct CpuDevice::Impl {
     std::vector<CpuKernelRow> rows;
-    std::vector<CpuKernelRow> kernels;     // those requested; Kernel::index is an index into it
-    std::optional<tbb::task_arena> arena;  // with the requested number of threads; empty: the caller's arena
+    std::vector<CpuKernelRow> kernels;  // those requested; Kernel::index is an index into it
+    std::optional<Workers> own;
+    Jobs jobs;
+    HostMemory memory;
     std::vector<PassTime> times;
     std::vector<void*> bindings;
     std::multimap<size_t, void*> kept;  // released blocks by their bytes, see keepReleased
@@ -141,10 +142,22 @@ struct CpuDevice::Impl {
             std::memset(block.from, 0, bytes);
             return block;
         }
+        if (memory.allocate != nullptr) {
+            const Block block{memory.allocate(memory.user, bytes, kAlignment), bytes};
+            if (block.from != nullptr) std::memset(block.from, 0, bytes);
+            return block;
+        }
         // calloc clears nothing that the system has just cleared: pages of large buffers are first touched by the kernels, on all cores.
         const Block block{std::calloc(1, bytes), bytes};
         if (block.from != nullptr) useLargePages(block.from, bytes);
         return block;
+    }
+
+    void giveBack(const Block& block) {
+        if (memory.release != nullptr)
+            memory.release(memory.user, block.from, block.bytes);
+        else
+            std::free(block.from);
     }
 
     PassTime& timeOf(std::string_view name) {
@@ -160,15 +173,26 @@ std::unique_ptr<CpuDevice> makeCpuDevice(std::span<const CpuKernelRow> rows, con
 
 CpuDevice::CpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& options) : impl_(std::make_unique<Impl>()), isa_(options.isa) {
     impl_->rows.assign(rows.begin(), rows.end());
-    if (options.threads > 0) impl_->arena.emplace(options.threads);  // oneTBB never frees the few kB of an arena
+    ASSERT((options.memory.allocate == nullptr) == (options.memory.release == nullptr), "give both functions of HostMemory, or neither");
+    impl_->memory = options.memory;
+    impl_->jobs = options.jobs;
+    if (options.jobs.run == nullptr)
+        impl_->jobs = impl_->own.emplace(options.threads).jobs();
+    else if (options.threads > 0)
+        impl_->jobs.workers = std::min(options.threads, options.jobs.workers);
     info_.name = fmt::format("{}, {} thread{}, {}", processorName(), threads(), threads() == 1 ? "" : "s", isaName(isa_));
 }
 
 CpuDevice::~CpuDevice() {
-    for (const auto& [bytes, block] : impl_->kept) std::free(block);
+    for (const auto& [bytes, block] : impl_->kept) impl_->giveBack({block, bytes});
 }
 
-int CpuDevice::threads() const { return impl_->arena ? impl_->arena->max_concurrency() : tbb::this_task_arena::max_concurrency(); }
+int CpuDevice::threads() const {
+    const JobsScope scope(jobs());
+    return jobWorkers();
+}
+
+Jobs CpuDevice::jobs() const { return impl_->jobs.run != nullptr ? impl_->jobs : currentJobs(); }
 
 Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> defines) {
     std::string wanted = joinDefines(defines);
@@ -216,7 +240,7 @@ void CpuDevice::release(uint64_t handle, size_t bytes) {
         } catch (const std::bad_alloc&) {  // a destructor calls this
         }
     }
-    std::free(block.from);
+    impl_->giveBack(block);
 }
 
 void CpuDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {
@@ -250,24 +274,16 @@ void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void
         body(0, count);
         return;
     }
-    if (threads() == 1) {
+    const JobsScope scope(jobs());
+    if (jobWorkers() == 1) {
         // One call, unless a stop may come in between.
         const size_t piece = stopFlag() != nullptr ? grain : count;
         for (size_t begin = 0; begin < count && !skips(); begin += piece) body(begin, std::min(begin + piece, count));
         return;
     }
-    const auto work = [&] {
-        parallelRanges(
-            tbb::blocked_range<size_t>(0, count, grain),
-            [&](const tbb::blocked_range<size_t>& r) {
-                if (!skips()) body(r.begin(), r.end());
-            },
-            tbb::simple_partitioner());
-    };
-    if (impl_->arena)
-        impl_->arena->execute(work);
-    else
-        work();
+    parallelParts(count, grain, [&](size_t begin, size_t end) {
+        if (!skips()) body(begin, end);
+    });
 }
 
 void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {

@@ -1,9 +1,10 @@
-// Device cpu: kernels compiled as C++ for several instruction sets; oneTBB runs them in chunks on all cores.
+// Device cpu: kernels compiled as C++ for several instruction sets, run in chunks by the jobs of the host or on all cores.
 #pragma once
 
 #include <memory>
 
 #include "engine/compute/device.h"
+#include "engine/core/jobs.h"
 
 namespace rivulet {
 
@@ -24,9 +25,20 @@ struct CpuKernelRow {
     uint32_t grain;  // kernel threads (particles, cells, ...) per chunk
 };
 
+// Memory of a host, for the buffers of a device cpu: particles, neighbour grid and lists, fields of solids, foam, drops.
+struct HostMemory {
+    void* user = nullptr;  // passed to both
+    // `bytes`, a multiple of `alignment`, at an address that is a multiple of `alignment`, a power of two; they need not be zeros. Null:
+    // out of memory, an error of the call that allocates. Called on threads that call the device; throws nothing.
+    void* (*allocate)(void* user, size_t bytes, size_t alignment) = nullptr;  // null: calloc
+    void (*release)(void* user, void* memory, size_t bytes) = nullptr;        // what `allocate` returned, with its bytes
+};
+
 struct CpuOptions {
-    int threads = 0;  // 0: all cores
+    int threads = 0;  // 0: all cores, or all workers of `jobs`
     Isa isa = bestIsa();
+    Jobs jobs = {};          // without `run`: the library's own threads
+    HostMemory memory = {};  // both functions or neither
 };
 
 class CpuDevice;
@@ -56,6 +68,7 @@ class CpuDevice final : public Device {
 
     Isa isa() const { return isa_; }
     int threads() const;
+    Jobs jobs() const;  // that its passes run on
     // Calls body(begin, end) for chunks of [0, count), in any order and on any thread. For passes written in C++ (sorting, lists). Chunks
     // are skipped as those of a dispatch (Device::stopOn).
     void parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body);

@@ -222,7 +222,7 @@ Result<Buffer> GlDevice::allocate(size_t bytes) {
 }
 
 void GlDevice::release(uint64_t handle, size_t bytes) {
-    gpu::deleteBuffer(static_cast<GLuint>(handle));
+    const gpu::BufferName ends(static_cast<GLuint>(handle));
     bytesAllocated_ -= bytes;
 }
 

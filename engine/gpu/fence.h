@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "engine/gpu/lost_context.h"
+
 namespace rivulet::gpu {
 
 class Fence {
@@ -16,7 +18,7 @@ class Fence {
         return *this;
     }
     ~Fence() {
-        if (sync_) glDeleteSync(sync_);
+        if (sync_ && !LostContext::here()) glDeleteSync(sync_);
     }
     // A fence behind all commands issued so far.
     static Fence now() {

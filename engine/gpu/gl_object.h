@@ -1,12 +1,14 @@
 // GlObject: a move-only owner of a GL object name; Buffer, Texture, ... use it.
 //
 // Everything in engine/gpu needs a current OpenGL 4.5 context when it is created, used and destroyed; contexts that share objects count as
-// the same one.
+// the same one. Once the context has ended it is destroyed within a LostContext.
 #pragma once
 
 #include <rivulet_glad/gl.h>
 
 #include <utility>
+
+#include "engine/gpu/lost_context.h"
 
 namespace rivulet::gpu {
 
@@ -25,7 +27,7 @@ class GlObject {
     GlObject(const GlObject&) = delete;
     GlObject& operator=(const GlObject&) = delete;
     ~GlObject() {
-        if (name_ != 0) kDelete(name_);
+        if (name_ != 0 && !LostContext::here()) kDelete(name_);
     }
     GLuint name() const { return name_; }
     GLuint release() { return std::exchange(name_, 0); }  // the caller owns the object now

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "engine/core/exception_error.h"
 #include "engine/core/message_line.h"
 #include "engine/gpu/current_context.h"
+#include "engine/gpu/lost_context.h"
 #include "fluid/capi/handles.h"
 
 namespace rivulet::capi {
@@ -21,7 +23,15 @@ namespace rivulet::capi {
 enum class Needs { memory, device, drawing };
 
 inline bool needsGl(const rivulet_context& context, Needs needs) {
-    return context.gl.present() && (needs == Needs::drawing || (needs == Needs::device && context.device->backend() == Backend::gl));
+    return context.gl.present() && !context.lost &&
+           (needs == Needs::drawing || (needs == Needs::device && context.device->backend() == Backend::gl));
+}
+
+inline Status notCurrent() {
+    return badInput("the OpenGL context that this was created in is not current on this thread: make it current first");
+}
+inline Status lostContext() {
+    return failed("the OpenGL context is lost: destroy the worlds, the skins and the context, and create others");
 }
 
 // Error (badInput): another call of the same context is running; OpenGL is needed, and the context's OpenGL context is not current.
@@ -30,23 +40,32 @@ inline Status ready(rivulet_context& context, Needs needs) {
     if ((context.busy || context.callback.frame != nullptr) && !left)
         return badInput("the context is in use: callbacks must not call back into it, and only one thread at a time may use it");
     if ((needsGl(context, needs) || context.hostGl) && context.current != nullptr && gpu::currentContext().context != context.current)
-        return badInput("the OpenGL context that this was created in is not current on this thread: make it current first");
+        return notCurrent();
     if (left) {
+        if (context.hostGl) context.drawing = false;
         context.hostGl.reset();  // restores the host's state
+        gpu::LostContext::here() = false;
         context.callback = {};
         context.busy = false;
     }
+    if (needsGl(context, needs) && context.drawing)
+        return badInput(
+            "a snapshot of the context is being drawn on another thread: only rivulet_world functions that need no OpenGL may run");
     return ok();
 }
 
-// One call: the context is busy and, if the call needs OpenGL, the host's OpenGL state is restored at the end.
+// One call: the context is busy, loops run on its jobs and, if the call needs OpenGL, the host's OpenGL state is restored at the end.
+// OpenGL objects of a context that has ended are dropped.
 class CallScope {
   public:
-    CallScope(rivulet_context& context, Needs needs) : context_(context) {
+    CallScope(rivulet_context& context, Needs needs) : context_(context), jobs_(context.jobs) {
         if (needsGl(context, needs)) context_.hostGl.emplace();  // may throw
+        if (context_.hostGl) context_.drawing = true;
+        if (context.lost) lost_.emplace();
         context_.busy = true;
     }
     ~CallScope() {
+        if (context_.hostGl) context_.drawing = false;
         context_.hostGl.reset();
         context_.busy = false;
     }
@@ -55,6 +74,8 @@ class CallScope {
 
   private:
     rivulet_context& context_;
+    JobsScope jobs_;
+    std::optional<gpu::LostContext> lost_;
 };
 
 inline rivulet_status statusOf(const Status& status, rivulet_error* why) {
@@ -97,10 +118,14 @@ void silently(const Work& work) {
 
 inline const char* kindOf(const rivulet_world*) { return "world"; }
 inline const char* kindOf(const rivulet_skin*) { return "skin"; }
+inline const char* kindOf(const rivulet_snapshot*) { return "snapshot"; }
 
-// Error (failed): the context's device is lost, so that its results are invalid.
+// Error (failed): OpenGL is needed and its context has ended; the context's device is lost, so that its results are invalid.
 inline Status stillThere(const rivulet_context& context, Needs needs) {
     if (needs == Needs::memory || context.device == nullptr) return ok();
+    // OpenCL that shares memory with OpenGL ends with it.
+    if (context.lost && (needs == Needs::drawing || context.device->backend() == Backend::gl || context.device->glShare().by))
+        return lostContext();
     const DeviceHealth health = context.device->health();
     if (health.state != DeviceHealth::lost) return ok();
     return failed(fmt::format("{} {}; create a context of another backend", context.name, health.why));

@@ -27,11 +27,11 @@ _Unwind_Reason_Code look(_Unwind_Context* context, void* to) {
     return _URC_NO_REASON;
 }
 
-void tell(Callback& callback, const HostLog& log, rivulet_level level, const std::string& sentence) {
+void run(Callback& callback, const std::function<void()>& call) {
     const CallbackScope scope(callback);
     try {
-        log.function(log.user, level, sentence.c_str());
-    } catch (...) {  // NOLINT(bugprone-empty-catch): an exception of the log function has nowhere to go
+        call();
+    } catch (...) {  // NOLINT(bugprone-empty-catch): an exception of the host's function has nowhere to go
     }
 }
 
@@ -53,17 +53,25 @@ bool Callback::left() const {
 void HostLog::add(rivulet_level level, std::string sentence) {
     if (function == nullptr) return;
     try {
-        waiting_.emplace_back(level, std::move(sentence));
+        later([f = function, u = user, level, text = std::move(sentence)] { f(u, level, text.c_str()); });
     } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): a sentence less, and the call goes on
     }
 }
 
+void HostLog::later(std::function<void()> call) {
+    const std::scoped_lock lock(mutex_);
+    waiting_.push_back(std::move(call));
+}
+
 void HostLog::deliver(Callback& callback) {
     if (callback.frame != nullptr) return;
-    while (!waiting_.empty()) {
-        const auto [level, sentence] = std::move(waiting_.front());
+    for (;;) {
+        std::unique_lock lock(mutex_);
+        if (waiting_.empty()) return;
+        const std::function<void()> call = std::move(waiting_.front());
         waiting_.pop_front();
-        tell(callback, *this, level, sentence);
+        lock.unlock();
+        run(callback, call);
     }
 }
 

@@ -4,9 +4,10 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
+#include <mutex>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "fluid/capi/rivulet.h"
 
@@ -33,17 +34,19 @@ class CallbackScope {
     Callback& callback_;
 };
 
-// Sentences for the host's log. They wait until the call that has them is done: what the log function does can then leave nothing half
-// done.
+// Sentences for the host's log, and other calls of its functions. They wait until the call that has them is done: what the host's function
+// does can then leave nothing half done.
 class HostLog {
   public:
     void (*function)(void* user, rivulet_level level, const char* sentence) = nullptr;
     void* user = nullptr;
-    void add(rivulet_level level, std::string sentence);
-    void deliver(Callback& callback);  // unless a function of the host is running: the call that runs it delivers them
+    void add(rivulet_level level, std::string sentence);  // from any thread
+    void later(std::function<void()> call);               // from any thread; what it throws is dropped
+    void deliver(Callback& callback);                     // unless a function of the host is running: the call that runs it delivers them
 
   private:
-    std::deque<std::pair<rivulet_level, std::string>> waiting_;
+    std::mutex mutex_;
+    std::deque<std::function<void()>> waiting_;
 };
 
 }  // namespace rivulet::capi

@@ -1,6 +1,7 @@
 // rivulet.h: contexts.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 
 #include "engine/gpu/load.h"
@@ -58,6 +59,28 @@ Result<HostMesh> meshOf(const rivulet_mesh& mesh, const std::string& name) {
 
 namespace {
 
+// The options of a cpu device, and the jobs of the context.
+Result<CpuOptions> cpuOptionsOf(const rivulet_context_options& o, rivulet_context& c) {
+    if (o.threads < 0) return badInput(fmt::format("options.threads is {}: give 1 or more, or 0 for all cores", o.threads));
+    const Result<rivulet_jobs> jobs = readStruct(o.jobs, "rivulet_jobs", "jobs");
+    if (!jobs) return jobs.error();
+    if (o.jobs != nullptr && (jobs->run == nullptr || jobs->workers < 1))
+        return badInput("jobs has no run, or less than 1 worker: give both, or set options.jobs to NULL");
+    if (jobs->run != nullptr)
+        c.jobs = {jobs->user, jobs->run, o.threads > 0 ? std::min(o.threads, jobs->workers) : jobs->workers, jobs->start, nullptr};
+    else
+        c.jobs = c.workers.emplace(o.threads > 0 ? std::min(o.threads, jobWorkers()) : jobWorkers())
+                     .jobs();  // they end with the context: a host may unload us
+    const Result<rivulet_memory> memory = readStruct(o.memory, "rivulet_memory", "memory");
+    if (!memory) return memory.error();
+    if (o.memory != nullptr && (memory->allocate == nullptr || memory->release == nullptr))
+        return badInput("memory has not both allocate and release: give both, or set options.memory to NULL");
+    CpuOptions cpu;
+    cpu.jobs = c.jobs;
+    cpu.memory = {memory->user, memory->allocate, memory->release};
+    return cpu;
+}
+
 Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     c.hostLog.function = o.log;
     c.hostLog.user = o.log_user;
@@ -76,8 +99,10 @@ Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     std::string backend = o.backend == nullptr ? "" : o.backend;
     const std::string device = o.device == nullptr ? "" : o.device;
     if (Status settled = settleBackend(backend, "auto", device); !settled) return settled;
+    const Result<CpuOptions> cpu = cpuOptionsOf(o, c);
+    if (!cpu) return cpu.error();
     const CallScope scope(c, Needs::drawing);
-    c.device = makeDevice(backend, c.gl, c.log, device);
+    c.device = makeDevice(backend, c.gl, c.log, device, *cpu);
     c.device->stopOn(&c.stop);
     c.memoryLimit = o.memory_limit;
     if (o.memory_limit > 0) c.device->limitMemory(o.memory_limit);
@@ -137,6 +162,16 @@ void rivulet_context_destroy(rivulet_context* context) {
     });
     context->hostLog.deliver(context->callback);
     if (gone) delete context;
+}
+
+rivulet_status rivulet_context_lost(rivulet_context* context, rivulet_error* why) {
+    return guarded(why, [&]() -> Status {
+        if (context == nullptr) return badInput("context is NULL");
+        if (context->busy || context->callback.frame != nullptr) return badInput("the context is in use: report its loss after the call");
+        context->lost = true;
+        context->current = nullptr;
+        return ok();
+    });
 }
 
 const char* rivulet_context_device(const rivulet_context* context) { return context == nullptr ? "" : context->name.c_str(); }

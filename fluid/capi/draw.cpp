@@ -5,68 +5,90 @@
 
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
+#include "fluid/capi/drawing.h"
 #include "fluid/capi/versioned.h"
 #include "fluid/render/host_picture.h"
 #include "fluid/render/renderers.h"
 
-using namespace rivulet;
-using namespace rivulet::capi;
-
-namespace {
+namespace rivulet::capi {
 
 Status drawable(const rivulet_context& context) {
-    if (context.water) return ok();
+    if (context.water) return stillThere(context, Needs::drawing);
     return badInput("the context has no OpenGL: set rivulet_context_options.find");
 }
 
-}  // namespace
+Status drawWater(rivulet_context& context, const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
+                 const rivulet_target* target, const std::function<Result<FluidView>()>& fluid) {
+    const Result<rivulet_view> viewing = readStruct(view, "rivulet_view", "view");
+    if (!viewing) return viewing.error();
+    const Result<rivulet_target> drawing = readStruct(target, "rivulet_target", "target");
+    if (!drawing) return drawing.error();
+    const rivulet_view& v = *viewing;
+    const rivulet_target& t = *drawing;
+    if (t.colours < RIVULET_AUTOMATIC || t.colours > RIVULET_SRGB)
+        return badInput(fmt::format("target.colours is {}: use RIVULET_AUTOMATIC, RIVULET_LINEAR or RIVULET_SRGB", t.colours));
+    if (v.view == nullptr || v.projection == nullptr) return badInput("view.view or view.projection is NULL: 16 floats each");
+    if (!areWithin({v.view, 16}, kMostDistance) || !areWithin({v.projection, 16}, kMostDistance))
+        return badInput(fmt::format("view.view or view.projection is not finite, or beyond {}", kMostDistance));
+    if (!areWithin(v.light_direction, kBrightest) || !areWithin(v.light_colour, kBrightest))
+        return badInput(fmt::format("view.light_direction or view.light_colour is not finite, or beyond {}", kBrightest));
+    Result<FluidLook> look = fluidLookOf(params, liquid);
+    if (!look) return look.error();
+    const RendererRow* row = renderers().find(params.renderer);
+    FrameView frame;
+    frame.view = matrixOf(v.view);
+    frame.projection = matrixOf(v.projection);
+    frame.cameraPosWorld = vec3(glm::inverse(frame.view)[3]);
+    frame.nearPlane = v.near_plane;
+    frame.farPlane = v.far_plane;
+    frame.width = t.width;
+    frame.height = t.height;
+    if (isSet(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);
+    frame.lightDirWorld = glm::normalize(frame.lightDirWorld);
+    frame.lightColour = isSet(v.light_colour) ? vectorOf(v.light_colour) : vec3(1.0F);
+    const HostTarget to{.framebuffer = t.framebuffer,
+                        .x = t.x,
+                        .y = t.y,
+                        .width = t.width,
+                        .height = t.height,
+                        .colours = static_cast<HostTarget::Colours>(t.colours)};
+    if (Status can = HostPicture::nothingUnderWay(); !can) return can;
+    const Result<FluidView> drawn = fluid();
+    if (!drawn) return drawn.error();
+    return context.water->draw(frame, *drawn, *look, to, row);
+}
+
+FluidLookParams plainLook(FluidLookParams look) {
+    look.quality = "fine";
+    look.colourBy = "speed";
+    return look;
+}
+
+rivulet_buffers buffersOf(const FluidView& fluid) {
+    return {.size = 0,
+            .position = fluid.position,
+            .velocity = fluid.velocity,
+            .id = fluid.id,
+            .count = fluid.count,
+            .radius = fluid.radius,
+            .wet_cells = fluid.wetCells,
+            .wetness = fluid.wetness};
+}
+
+}  // namespace rivulet::capi
+
+using namespace rivulet;
+using namespace rivulet::capi;
 
 rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view, const rivulet_target* target, rivulet_error* why) {
     const rivulet_status status = guarded(why, [&]() -> Status {
         if (world == nullptr) return badInput("world is NULL");
         if (Status there = drawable(*world->context); !there) return there;
         if (Status can = ready(*world->context, Needs::drawing); !can) return can;
-        const Result<rivulet_view> viewing = readStruct(view, "rivulet_view", "view");
-        if (!viewing) return viewing.error();
-        const Result<rivulet_target> drawing = readStruct(target, "rivulet_target", "target");
-        if (!drawing) return drawing.error();
-        const rivulet_view& v = *viewing;
-        const rivulet_target& t = *drawing;
-        if (t.colours < RIVULET_AUTOMATIC || t.colours > RIVULET_SRGB)
-            return badInput(fmt::format("target.colours is {}: use RIVULET_AUTOMATIC, RIVULET_LINEAR or RIVULET_SRGB", t.colours));
-        if (v.view == nullptr || v.projection == nullptr) return badInput("view.view or view.projection is NULL: 16 floats each");
-        if (!areWithin({v.view, 16}, kMostDistance) || !areWithin({v.projection, 16}, kMostDistance))
-            return badInput(fmt::format("view.view or view.projection is not finite, or beyond {}", kMostDistance));
-        if (!areWithin(v.light_direction, kBrightest) || !areWithin(v.light_colour, kBrightest))
-            return badInput(fmt::format("view.light_direction or view.light_colour is not finite, or beyond {}", kBrightest));
-        Result<FluidLook> look = fluidLookOf(world->params.look, world->params.fluid.liquid);
-        if (!look) return look.error();
-        const RendererRow* row = renderers().find(world->params.look.renderer);
-        FrameView frame;
-        frame.view = matrixOf(v.view);
-        frame.projection = matrixOf(v.projection);
-        frame.cameraPosWorld = vec3(glm::inverse(frame.view)[3]);
-        frame.nearPlane = v.near_plane;
-        frame.farPlane = v.far_plane;
-        frame.width = t.width;
-        frame.height = t.height;
-        if (isSet(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);
-        frame.lightDirWorld = glm::normalize(frame.lightDirWorld);
-        frame.lightColour = isSet(v.light_colour) ? vectorOf(v.light_colour) : vec3(1.0F);
-        const HostTarget to{.framebuffer = t.framebuffer,
-                            .x = t.x,
-                            .y = t.y,
-                            .width = t.width,
-                            .height = t.height,
-                            .colours = static_cast<HostTarget::Colours>(t.colours)};
-        if (Status can = HostPicture::nothingUnderWay(); !can) return can;
-        const auto uploaded = [&] {
+        return drawWater(*world->context, world->params.look, world->params.fluid.liquid, view, target, [&] {
             const CallScope scope(*world->context, Needs::drawing);
-            return world->upload.view(*world->world, world->params.look);
-        };
-        Result<FluidView> fluid = uploaded();
-        if (!fluid) return fluid.error();
-        return world->context->water->draw(frame, *fluid, *look, to, row);
+            return world->upload.view(*world->world, world->params.look, world->fallingDrops, world->hangingDrops);
+        });
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
     return status;
@@ -75,20 +97,9 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
 rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buffers, rivulet_error* why) {
     return with(world, why, Needs::drawing, [&]() -> Status {
         if (Status there = drawable(*world->context); !there) return there;
-        FluidLookParams plain = world->params.look;
-        plain.quality = "fine";    // all of them, in one order
-        plain.colourBy = "speed";  // velocities, not normals
-        Result<FluidView> fluid = world->upload.view(*world->world, plain);
+        Result<FluidView> fluid = world->upload.view(*world->world, plainLook(world->params.look));
         if (!fluid) return fluid.error();
-        const rivulet_buffers full{.size = 0,
-                                   .position = fluid->position,
-                                   .velocity = fluid->velocity,
-                                   .id = fluid->id,
-                                   .count = fluid->count,
-                                   .radius = fluid->radius,
-                                   .wet_cells = fluid->wetCells,
-                                   .wetness = fluid->wetness};
-        return writeStruct(full, buffers, "rivulet_buffers", "buffers");
+        return writeStruct(buffersOf(*fluid), buffers, "rivulet_buffers", "buffers");
     });
 }
 
@@ -100,9 +111,10 @@ rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid
         if (solid != RIVULET_WALL && solid != RIVULET_BODY)
             return badInput(fmt::format("solid is {}: use RIVULET_WALL or RIVULET_BODY", solid));
         const bool wall = solid == RIVULET_WALL;
-        const size_t count = wall ? world->walls.size() : world->world->bodies().size();
+        const std::vector<SolidRef> walls = world->walls.solids().colliders;
+        const size_t count = wall ? walls.size() : world->world->bodies().size();
         if (index >= count) return badInput(fmt::format("there is no {} {}: the world has {}", wall ? "wall" : "body", index, count));
-        const SolidRef ref = wall ? world->walls[index] : SolidRef{ProbeOn::body, static_cast<uint32_t>(index)};
+        const SolidRef ref = wall ? walls[index] : SolidRef{ProbeOn::body, static_cast<uint32_t>(index)};
         const WetSolid* found = view.surface->find(ref);
         if (found == nullptr && wall)
             return badInput(fmt::format("wall {} does not get wet: none of its surface is inside fluid.box", index));

@@ -6,17 +6,17 @@ import re
 import sys
 
 HEADERS = [
-    "engine/core/result.h", "engine/core/log.h", "engine/compute/device.h", "engine/gpu/load.h", "engine/gpu/host_state.h",
-    "engine/render/frame_view.h", "engine/core/mesh_view.h", "fluid/voxel/voxel_field.h", "fluid/sim/solids/solids.h", "fluid/sim/solids/bodies.h",
+    "engine/core/result.h", "engine/core/log.h", "engine/core/jobs.h", "engine/compute/device.h", "engine/compute/device_cpu.h", "engine/gpu/lost_context.h", "engine/gpu/load.h", "engine/gpu/host_state.h",
+    "engine/render/frame_view.h", "engine/core/mesh_view.h", "fluid/voxel/voxel_field.h", "fluid/voxel/field_bake.h", "fluid/sim/solids/solids.h", "fluid/sim/solids/bodies.h",
     "fluid/sim/solids/probes.h",
     "fluid/sim/world/fluid_params.h", "fluid/sim/forces/force_*.h", "fluid/sim/methods/method_pbf.h",
     "fluid/sim/methods/method_dfsph.h", "fluid/sim/sources/block.h", "fluid/sim/sources/emitter.h", "fluid/sim/forces/force.h", "fluid/sim/world/stats.h", "fluid/sim/world/particle_view.h", "fluid/sim/world/fluid_world.h",
     "fluid/sim/query/water_query.h", "fluid/sim/solids/buoyancy.h", "fluid/sim/query/volumes.h", "fluid/sim/world/world_state.h", "fluid/render/backend.h",
-    "fluid/render/fluid_view.h", "fluid/render/fluid_upload.h", "fluid/render/look_params.h", "fluid/render/host_target.h",
+    "fluid/render/fluid_view.h", "fluid/render/fluid_snapshot.h", "fluid/render/fluid_upload.h", "fluid/render/look_params.h", "fluid/render/host_target.h",
     "fluid/render/water_renderer.h", "fluid/render/renderers.h", "fluid/flow/flow_mesh.h", "fluid/flow/surface_flow.h",
     "fluid/flow/flow_maps.h", "fluid/flow/flow_layer.h", "fluid/flow/placed_flow.h", "fluid/flow/air_drops.h", "fluid/io/export.h", "fluid/io/marching_cubes.h", "fluid/io/recording.h",
     "fluid/capi/rivulet.h", "fluid/capi/rivulet_context.h", "fluid/capi/rivulet_world.h", "fluid/capi/rivulet_query.h",
-    "fluid/capi/rivulet_draw.h", "fluid/capi/rivulet_skin.h",
+    "fluid/capi/rivulet_draw.h", "fluid/capi/rivulet_skin.h", "fluid/capi/rivulet_snapshot.h",
 ]
 
 

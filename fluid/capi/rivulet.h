@@ -20,12 +20,14 @@
  * where, and the remedy. Nothing is thrown. A NULL handle gives RIVULET_BAD_INPUT; destroying NULL does nothing.
  *
  * Threads: one thread at a time uses a context and everything made from it; with OpenGL, a thread on which the context's OpenGL context is
- * current. Contexts are independent: different threads may use different ones at the same time.
+ * current. Contexts are independent: different threads may use different ones at the same time. Snapshots can be drawn while another thread
+ * steps their world: see rivulet_snapshot.h.
  *
- * Callbacks (log, bodies) run on the calling thread, before the call returns; log is called at the end of the call. A callback that calls
- * back into the same context gets RIVULET_BAD_INPUT. A C++ callback may throw: the call then goes on and returns RIVULET_FAILED, with the
- * exception's text; what log throws is dropped. A callback may be left by longjmp on the same thread: the next call ends the unfinished
- * one, and a world that was being stepped, reset or created is incomplete (see rivulet_world_step); a little memory is lost.
+ * Callbacks (log, bodies, jobs, memory) run on the calling thread, before the call returns; log is called at the end of the call. A
+ * callback that calls back into the same context gets RIVULET_BAD_INPUT. A C++ callback may throw: the call then goes on and returns
+ * RIVULET_FAILED, with the exception's text; what log throws is dropped. A callback may be left by longjmp on the same thread: the next
+ * call ends the unfinished one, and a world that was being stepped, reset or created is incomplete (see rivulet_world_step); a little
+ * memory is lost.
  *
  * Bounds: what is not finite or absurd is RIVULET_BAD_INPUT. Values of a scene have the ranges of docs/parameters.md, and blocks, emitters,
  * bodies and particles lie in the box. Lengths and positions are at most 1e6 m, speeds of walls, bodies and particles at most 1e6 m/s,
@@ -35,7 +37,7 @@
  * OpenGL context of their rivulet_context is not current. They restore all OpenGL state, with two exceptions: pending errors of glGetError
  * may be cleared, and an object that was deleted while bound is unbound. Transform feedback, counting queries and conditional rendering
  * must not be active. Only rivulet_world_draw draws. Destroy worlds, skins and contexts before the OpenGL context: if it is not current,
- * destruction is refused and logged.
+ * destruction is refused and logged. If it has ended, call rivulet_context_lost first.
  */
 #ifndef RIVULET_H
 #define RIVULET_H
@@ -44,6 +46,7 @@
 #include "rivulet_draw.h"
 #include "rivulet_query.h"
 #include "rivulet_skin.h"
+#include "rivulet_snapshot.h"
 #include "rivulet_world.h"
 
 #endif

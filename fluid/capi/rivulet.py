@@ -46,7 +46,7 @@ class _Why(Structure):
 class _ContextOptions(Structure):
     _fields_ = [("size", c_size_t), ("find", c_void_p), ("backend", c_char_p), ("device", c_char_p), ("log", _LOG), ("log_user", c_void_p),
                 ("memory_limit", c_size_t), ("sky_horizon", c_float * 3), ("sky_zenith", c_float * 3), ("sky_sun", c_float * 3),
-                ("clouds", c_float)]
+                ("clouds", c_float), ("threads", c_int32), ("jobs", c_void_p), ("memory", c_void_p)]
 
 
 class _Mesh(Structure):
@@ -246,14 +246,15 @@ class _Handle:
 
 class Context(_Handle):
     """A device that simulates. backend: auto, cpu or cl; device: for cl, its number or a part of its name; log: called with (level, sentence),
-    levels 0 info to 3 error; memory_limit: bytes, as in rivulet.h, 0 for no limit. Close it after its worlds and skins."""
+    levels 0 info to 3 error; memory_limit: bytes, as in rivulet.h, 0 for no limit; threads: at most, 0 for all cores. Close it after its
+    worlds and skins."""
 
     _kind = "context"
 
-    def __init__(self, backend="auto", device=None, log=None, memory_limit=0):
+    def __init__(self, backend="auto", device=None, log=None, memory_limit=0, threads=0):
         self._log = _LOG(0) if log is None else _LOG(lambda _, level, sentence: log(level, sentence.decode(errors="replace")))
         options = _struct(_ContextOptions, backend=_text(backend), device=_text(device), log=self._log,
-                        memory_limit=_whole(memory_limit, 0, 2**63, "memory_limit"))
+                        memory_limit=_whole(memory_limit, 0, 2**63, "memory_limit"), threads=_whole(threads, 0, 2**31, "threads"))
         pointer = c_void_p()
         _call("context_create", options, pointer)
         self._pointer = pointer

@@ -18,6 +18,29 @@ typedef struct rivulet_sample {
 RIVULET_API rivulet_status rivulet_world_sample(rivulet_world* world, const float* places, size_t count, rivulet_sample* samples,
                                                 rivulet_error* why);
 
+/* The same without waiting: `then` receives the samples once, at the end of a later call of this world, on backend cpu at the end of this
+   one. They are of now and valid within `then`. If the world is destroyed before, `then` is not called. */
+RIVULET_API rivulet_status rivulet_world_sample_later(rivulet_world* world, const float* places, size_t count,
+                                                      void (*then)(void* user, const rivulet_sample* samples, size_t count), void* user,
+                                                      rivulet_error* why);
+
+/* Buoyancy of objects that the host moves and that have no effect on the water, for many small or distant ones: lift by Archimedes at
+   points of the object, drag by Morison et al. 1950 against the water's velocity there. An object that displaces water is a rivulet_body.
+ */
+typedef struct rivulet_float {
+    size_t size;
+    const float* points;  /* m, 3 each, in the object's frame, whose origin is its centre of mass: about a spacing apart or wider */
+    const float* volumes; /* m^3, one a point: they add up to the object's volume */
+    size_t points_count;
+    float mass;                        /* kg */
+    float linear_drag, quadratic_drag; /* 1/s; 1: about 1 of a cube, 0.5 of a ball */
+    rivulet_body_state state;
+} rivulet_float;
+/* The loads on `count` objects, to be applied for `seconds`: drag never reverses a motion within that time. gravity: m/s^2, NULL: that of
+   fluid.gravity. Each object begins its own size after the one before. Waits for the device, once for all objects. */
+RIVULET_API rivulet_status rivulet_world_buoyancy(rivulet_world* world, const rivulet_float* floats, size_t count, const float* gravity,
+                                                  double seconds, rivulet_body_load* loads, rivulet_error* why);
+
 /* The first crossing of each ray with the water's surface. Waits for the device. */
 typedef struct rivulet_ray {
     float origin[3], direction[3]; /* m; of any length but 0: a ray of length 0 misses */
@@ -76,6 +99,21 @@ typedef struct rivulet_load {
 /* `count` receives the number of all probes, also where `capacity` is smaller. */
 RIVULET_API rivulet_status rivulet_world_loads(const rivulet_world* world, rivulet_load* loads, size_t capacity, size_t* count,
                                                rivulet_error* why);
+
+/* The parts of a world as lines, for the debug drawing of a host. */
+typedef enum rivulet_part {
+    RIVULET_PART_BOX = 0,     /* fluid.box */
+    RIVULET_PART_EMITTER = 1, /* its opening or box, and an arrow as long as the way of its water in a tenth of a second */
+    RIVULET_PART_SINK = 2,
+    RIVULET_PART_PROBE = 3, /* its region, in the box */
+    RIVULET_PART_WALL = 4,  /* of one that moves: the axes of its frame, 4 spacings long */
+    RIVULET_PART_BODY = 5   /* likewise */
+} rivulet_part;
+/* Calls `line` for each line, at the end of this call: `part` a rivulet_part, `from` and `to` m, in the world. `index`: of the emitter,
+   sink, probe or body, or of the wall among those that move, in their order; 0 of the box. */
+RIVULET_API rivulet_status rivulet_world_lines(const rivulet_world* world,
+                                               void (*line)(void* user, int32_t part, size_t index, const float* from, const float* to),
+                                               void* user, rivulet_error* why);
 
 /* Writes the particles as .ply, .vtp (ParaView) or .csv, the water's surface as .obj or .ply, by the path's ending; +Y up, metres. */
 RIVULET_API rivulet_status rivulet_world_export(rivulet_world* world, const char* path, rivulet_error* why);

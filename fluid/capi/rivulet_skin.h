@@ -40,7 +40,8 @@ typedef struct rivulet_skin_stats {
 RIVULET_API rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin,
                                                rivulet_error* why);
 RIVULET_API void rivulet_skin_destroy(rivulet_skin* skin);
-/* Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame). */
+/* Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame), in the shape that
+   the last step gave it. On a GPU the first call after a step in which the skin bent waits for it. */
 RIVULET_API rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why);
 /* Advances the skin by `seconds`; 0 or less: nothing happens. RIVULET_FAILED after rivulet_context_stop: while a stop is asked, nothing is
    stepped. If the stop interrupts a step, the drops are not valid any more: destroy the skin and create another. */
@@ -52,6 +53,27 @@ RIVULET_API rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_s
 RIVULET_API rivulet_status rivulet_skin_texture(rivulet_skin* skin, uint32_t* texture, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivulet_skin_stats* stats,
                                                  rivulet_error* why); /* waits for the device */
+
+/* Steps skins, as rivulet_skin_step does each, and the drops in the air between them, which belong to the world: what leaves a skin falls,
+   lands on a skin that it meets, goes into the world's water or is lost below `floor`; particles of the world that come down on a skin
+   become drops. After the world's step of the same `seconds`. Water is exchanged if rivulet_world_options.skins_bring is above 0; this
+   waits for a GPU. rivulet_world_draw draws the drops in the air and those that hang from the skins, which the skins' maps then leave out.
+   `skins`: of the world's context; the same ones in the same order in each call, others after them. `inputs`: one each, every one of its
+   own size; NULL: none. A world's reset or restore leaves skins and drops in the air as they are. */
+typedef struct rivulet_air {
+    size_t size;
+    const float* gravity;          /* m/s^2; NULL: fluid.gravity. That of `inputs` is not used */
+    float floor;                   /* m */
+    uint64_t drops;                /* out: in the air now */
+    double in_air, lost;           /* out: m^3; in the air now, below the floor since the start */
+    double into_water, from_water; /* out: m^3, since the start: from drops to the world's particles, and from those to drops */
+} rivulet_air;
+RIVULET_API rivulet_status rivulet_world_step_skins(rivulet_world* world, rivulet_skin* const* skins, const rivulet_skin_inputs* inputs,
+                                                    size_t count, double seconds, rivulet_air* air, rivulet_error* why);
+/* The drops in the air, for a host that draws them: 4 floats each, xyz m and radius m, of the first `capacity`; `count` receives their
+   number. */
+RIVULET_API rivulet_status rivulet_world_air_drops(const rivulet_world* world, float* drops, size_t capacity, size_t* count,
+                                                   rivulet_error* why);
 
 #ifdef __cplusplus
 }

@@ -23,9 +23,14 @@ typedef struct rivulet_mesh {
     const float* uvs;   /* 2 a vertex; for skins */
     float friction;     /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
     float restitution;  /* of a wall: 0 to 1; negative: that of fluid.collision */
-    uint32_t moves;     /* of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 0: stands still */
+    /* Of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 2: deforms with rivulet_inputs.shapes, of those
+       that are given when the world is created; 0: stands still. */
+    uint32_t moves;
     int32_t resolution; /* of a wall: voxels along its longest side; 0: voxels of a quarter of the fluid's spacing */
     rivulet_pose pose;  /* of a wall that moves: at t = 0 */
+    /* m, the low and the high corner of a box in which a wall that deforms always is; voxels are kept for all of it, `resolution` of them
+       along its longest side. All 0: the box of its positions, longer by half of its longest side in each direction. */
+    float reach_low[3], reach_high[3];
 } rivulet_mesh;
 
 /* A floating body, coupled to the fluid both ways. The origin of its frame is its centre of mass, its axes are the principal axes. */
@@ -72,14 +77,21 @@ typedef struct rivulet_world_options {
     const float* particles;
     const float* particle_velocities; /* m/s, 3 each; NULL: at rest */
     size_t particles_count;
+    /* m^3 of water that drops of skins are expected to bring in 10 s: memory is reserved for it, see rivulet_world_step_skins. 0: the
+       world's water and its skins do not mix. */
+    double skins_bring;
 } rivulet_world_options;
 
 typedef struct rivulet_inputs {
     size_t size;
     const float* gravity;      /* m/s^2; NULL: fluid.gravity */
-    const rivulet_pose* poses; /* of the walls that move, in their order, at the end of the frame; NULL: as given before; after a reset
-                                  those of t = 0, after a restore those that were saved */
+    const rivulet_pose* poses; /* of the walls that move, in the order of their ids, at the end of the frame; NULL: as given before; after a
+                                  reset those of t = 0, after a restore those that were saved */
     size_t poses_count;
+    /* Of the walls that deform, in the order of their ids: the positions of all vertices at the end of the frame, m, in the world's frame; an
+       entry that is NULL, or NULL itself: as before. Within the frame vertices move uniformly. */
+    const float* const* shapes;
+    size_t shapes_count;
 } rivulet_inputs;
 
 typedef struct rivulet_stats {
@@ -108,6 +120,23 @@ RIVULET_API rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_err
 /* Sets a parameter: "fluid.viscosity=0.01", "look.quality=fast", "emitters.0.litresPerSecond=2". A parameter that docs/parameters.md calls
    fixed is refused. */
 RIVULET_API rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, rivulet_error* why);
+/* Walls that come and go while the world runs. Those of rivulet_world_options have their index as id; `id` receives that of another one,
+   which is greater than all before. A wall is baked beside the frames, on one core: 0.1 to 5 s. It acts from the step on before which its
+   bake ended; particles that are inside it then are removed, and the log reports their number. The poses of rivulet_inputs are those of all
+   walls that move, in the order of their ids, whether they are baked yet or not. A wall that stands still and was given at creation acts
+   until the others of these are baked without it; all others end with the call. With fluid.wetness.on walls do not change. */
+typedef enum rivulet_wall_state {
+    RIVULET_WALL_BAKES = 0, /* it does not act yet */
+    RIVULET_WALL_ACTS = 1,
+    RIVULET_WALL_LEAVES = 2 /* it was removed, and acts until the others are baked */
+} rivulet_wall_state;
+RIVULET_API rivulet_status rivulet_world_add_wall(rivulet_world* world, const rivulet_mesh* wall, uint32_t* id, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_world_remove_wall(rivulet_world* world, uint32_t id, rivulet_error* why);
+/* `state`: a rivulet_wall_state. RIVULET_FAILED: its bake failed, and why; it never acts. RIVULET_BAD_INPUT: there is no such wall. */
+RIVULET_API rivulet_status rivulet_world_wall(const rivulet_world* world, uint32_t id, int32_t* state, rivulet_error* why);
+/* Sets all emitters and sinks: {"emitters": [...], "sinks": [...]}, as in the world's json; a list that is absent is empty. With another
+   number of either than before, all emitters begin anew. Emitters spawn into free memory: fluid.maxParticles reserves it. */
+RIVULET_API rivulet_status rivulet_world_set_sources(rivulet_world* world, const char* json, rivulet_error* why);
 /* On a GPU the values are two or three frames old. */
 RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why);
 

@@ -1,15 +1,24 @@
 // rivulet.h: queries and files.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <memory>
+#include <span>
+#include <utility>
 
 #include "engine/core/file.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
+#include "fluid/capi/walls.h"
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
+#include "fluid/sim/solids/buoyancy.h"
+#include "fluid/sim/world/contradictions.h"
 #include "fluid/sim/world/host_particles.h"
 
 using namespace rivulet;
@@ -21,6 +30,46 @@ std::vector<vec3> placesOf(const float* places, size_t count) {
     std::vector<vec3> all;
     for (size_t k = 0; k < count; ++k) all.push_back(vectorOf(places + 3 * k));
     return all;
+}
+
+rivulet_sample sampleOf(const FluidSample& s) {
+    rivulet_sample to{.density = s.density, .velocity = {}, .gradient = {}};
+    put(s.velocity, to.velocity);
+    put(s.gradient, to.gradient);
+    return to;
+}
+
+// A rivulet_float, read.
+struct Afloat {
+    std::vector<FloatPoint> points;
+    BodyState state;
+    double mass = 0;
+    float linearDrag = 0, quadraticDrag = 0;
+};
+
+Result<Afloat> floatOf(const rivulet_float& given, const std::string& name) {
+    if (given.points == nullptr || given.volumes == nullptr || given.points_count == 0)
+        return badInput(fmt::format("{} has no points: give points and their volumes", name));
+    if (!(given.mass > 0) || !std::isfinite(given.mass))
+        return badInput(fmt::format("{}.mass is {} kg: give more than 0", name, given.mass));
+    for (const float drag : {given.linear_drag, given.quadratic_drag})
+        if (!(drag >= 0) || drag > kMostGravity)
+            return badInput(fmt::format("{}.linear_drag or quadratic_drag is {}: give 0 to {}", name, drag, kMostGravity));
+    Afloat to{
+        .points = {}, .state = {}, .mass = double{given.mass}, .linearDrag = given.linear_drag, .quadraticDrag = given.quadratic_drag};
+    to.points.reserve(given.points_count);
+    for (size_t k = 0; k < given.points_count; ++k) {
+        const FloatPoint point{vectorOf(given.points + 3 * k), given.volumes[k]};
+        if (!isWithin(point.place, kMostDistance) || !(point.volume >= 0) || !isWithin(vec3(point.volume), kMostDistance))
+            return badInput(fmt::format("{}: point {} or its volume is not finite, negative or beyond {}", name, k, kMostDistance));
+        to.points.push_back(point);
+    }
+    const Result<Pose> pose = soundPose(given.state.pose, name + ".state.pose");
+    if (!pose) return pose.error();
+    to.state = {*pose, vectorOf(given.state.velocity), vectorOf(given.state.spin)};
+    if (!isWithin(to.state.velocity, kMostDistance) || !isWithin(to.state.spin, kMostDistance))
+        return badInput(fmt::format("{}.state is not finite, or beyond {} m/s or rad/s", name, kMostDistance));
+    return to;
 }
 
 rivulet_volume_count countOf(const VolumeCount& c) { return {c.id, c.entered, c.left, c.inside, c.time, c.volumeInside()}; }
@@ -48,10 +97,63 @@ rivulet_status rivulet_world_sample(rivulet_world* world, const float* places, s
         const Result<std::vector<FluidSample>> answer = world->world->sample(placesOf(places, count));
         if (!answer) return answer.error();
         const std::vector<FluidSample>& all = *answer;
-        for (size_t k = 0; k < all.size(); ++k) {
-            samples[k].density = all[k].density;
-            put(all[k].velocity, samples[k].velocity);
-            put(all[k].gradient, samples[k].gradient);
+        std::transform(all.begin(), all.end(), samples, sampleOf);
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_sample_later(rivulet_world* world, const float* places, size_t count,
+                                          void (*then)(void* user, const rivulet_sample* samples, size_t count), void* user,
+                                          rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (count > 0 && places == nullptr) return badInput("places is NULL, and count is not 0");
+        if (then == nullptr) return badInput("then is NULL: it receives the samples");
+        return world->world->sampleLater(
+            placesOf(places, count), [world = std::weak_ptr(world->alive), then, user](std::span<const FluidSample> water) {
+                const std::shared_ptr<rivulet_world*> to = world.lock();
+                if (!to) return;
+                std::vector<rivulet_sample> samples;
+                samples.reserve(water.size());
+                for (const FluidSample& s : water) samples.push_back(sampleOf(s));
+                (*to)->context->hostLog.later([then, user, samples = std::move(samples)] { then(user, samples.data(), samples.size()); });
+            });
+    });
+}
+
+rivulet_status rivulet_world_buoyancy(rivulet_world* world, const rivulet_float* floats, size_t count, const float* gravity, double seconds,
+                                      rivulet_body_load* loads, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (count > 0 && (floats == nullptr || loads == nullptr)) return badInput("floats or loads is NULL, and count is not 0");
+        if (!(seconds > 0) || seconds > kLongestFrame)
+            return badInput(fmt::format("seconds is {}: give more than 0 and at most {} s", seconds, kLongestFrame));
+        BuoyancyParams params{.restDensity = world->params.fluid.restDensity, .gravity = world->params.fluid.gravity};
+        if (gravity != nullptr) params.gravity = vectorOf(gravity);
+        if (!isWithin(params.gravity, kMostGravity))
+            return badInput(fmt::format("gravity is not finite, or beyond {} m/s^2", kMostGravity));
+        std::vector<Afloat> all;
+        all.reserve(count);
+        std::vector<vec3> places;
+        const auto* at = reinterpret_cast<const std::byte*>(floats);
+        for (size_t k = 0; k < count; ++k) {
+            const std::string name = fmt::format("floats[{}]", k);
+            const Result<rivulet_float> one = readStruct(reinterpret_cast<const rivulet_float*>(at), "rivulet_float", name);
+            if (!one) return one.error();
+            at += one->size;
+            Result<Afloat> read = floatOf(*one, name);
+            if (!read) return read.error();
+            addPlaces(read->points, read->state.pose, places);
+            all.push_back(std::move(*read));
+        }
+        const Result<std::vector<FluidSample>> water = world->world->sample(places);
+        if (!water) return water.error();
+        size_t first = 0;
+        for (size_t k = 0; k < count; ++k) {
+            const Afloat& f = all[k];
+            params.linearDrag = f.linearDrag;
+            params.quadraticDrag = f.quadraticDrag;
+            const BodyLoad load = buoyancy(f.points, f.state, std::span(*water).subspan(first, f.points.size()), params, f.mass, seconds);
+            first += f.points.size();
+            loads[k] = {{load.force.x, load.force.y, load.force.z}, {load.torque.x, load.torque.y, load.torque.z}};
         }
         return ok();
     });

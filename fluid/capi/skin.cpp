@@ -11,6 +11,7 @@
 #include "engine/gpu/host_buffer.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
+#include "fluid/capi/skins.h"
 #include "fluid/capi/versioned.h"
 #include "fluid/flow/unwrap.h"
 #include "fluid/sim/world/contradictions.h"
@@ -45,6 +46,7 @@ Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivul
     Result<SurfaceFlow> flow = SurfaceFlow::create(*context.device, std::move(*cleaned), params);
     if (!flow) return flow.error();
     s.flow.emplace(std::move(*flow));
+    s.placed.emplace(*s.flow, [&s](double time) { return s.motion.at(time); });
     s.vertices = mesh->positions.size();
     Result<FlowMaps> maps = FlowMaps::create(*s.flow, uvs, size);
     if (!maps) return maps.error();
@@ -56,7 +58,10 @@ Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivul
     return ok();
 }
 
-// What a step uses: OpenGL on every backend, if the positions are in one of its buffers. Its inputs are not checked yet.
+}  // namespace
+
+namespace rivulet::capi {
+
 Needs needsOf(const rivulet_skin_inputs* inputs) {
     constexpr size_t kAt = offsetof(rivulet_skin_inputs, positions_buffer);
     size_t size = 0;
@@ -65,6 +70,10 @@ Needs needsOf(const rivulet_skin_inputs* inputs) {
     if (size >= kAt + sizeof buffer) std::memcpy(&buffer, reinterpret_cast<const std::byte*>(inputs) + kAt, sizeof buffer);
     return buffer == 0 ? Needs::device : Needs::drawing;
 }
+
+}  // namespace rivulet::capi
+
+namespace {
 
 Status checkPositionsBuffer(const rivulet_skin& skin, const rivulet_skin_inputs& in) {
     if (in.positions != nullptr) return badInput("inputs.positions and inputs.positions_buffer are both set: give one of them");
@@ -97,7 +106,63 @@ Status copyPositions(rivulet_skin& skin, uint32_t from) {
     return ok();
 }
 
+constexpr vec3 kEarth(0.0F, -9.81F, 0.0F);  // m/s^2
+
 }  // namespace
+
+dmat4 rivulet_skin::Motion::at(double time) const {
+    const double share = seconds > 0 ? (time - begin) / seconds : 1;
+    if (share == 1 || before == after) return after;
+    const glm::dquat turn = glm::slerp(glm::quat_cast(glm::dmat3(before)), glm::quat_cast(glm::dmat3(after)), share);
+    dmat4 m = glm::mat4_cast(turn);
+    m[3] = glm::mix(before[3], after[3], share);
+    return m;
+}
+
+namespace rivulet::capi {
+
+Status checkSkinStep(rivulet_skin& skin, const rivulet_skin_inputs& in, double seconds) {
+    if (!std::isfinite(seconds) || seconds > kLongestFrame)
+        return badInput(fmt::format("seconds is {}: give a finite time of at most {} s", seconds, kLongestFrame));
+    for (const float* given : {in.gravity, in.wind})
+        if (given != nullptr && !isWithin(vectorOf(given), kMostGravity))
+            return badInput(fmt::format("inputs.gravity or inputs.wind is not finite, or beyond {} m/s^2 or m/s", kMostGravity));
+    if (in.to_world != nullptr && !areWithin({in.to_world, 16}, kMostDistance))
+        return badInput(fmt::format("inputs.to_world is not finite, or beyond {}", kMostDistance));
+    if (in.positions_buffer != 0)
+        if (Status can = checkPositionsBuffer(skin, in); !can) return can;
+    if (!(seconds > 0)) return ok();
+    Device& device = *skin.context->device;
+    device.goOn();  // another owner of buffers may have been interrupted
+    if (skin.interrupted) return failed("an earlier step of the skin was interrupted: create it anew");
+    if (device.stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
+    return ok();
+}
+
+void placeSkin(rivulet_skin& skin, const rivulet_skin_inputs& in, double begin, double seconds) {
+    const dmat4 after = in.to_world != nullptr ? dmat4(matrixOf(in.to_world)) : dmat4(1.0);
+    skin.motion = {skin.steps++ > 0 ? skin.motion.after : after, after, begin, seconds};
+}
+
+Status stepSkin(rivulet_skin& skin, const rivulet_skin_inputs& in, const vec3& gravity, double seconds) {
+    SurfaceFlowInputs to{.gravity = gravity, .toWorld = skin.motion.after};
+    if (in.wind != nullptr) to.wind = vectorOf(in.wind);
+    if (in.positions != nullptr) {
+        skin.positions.clear();
+        for (size_t k = 0; k < skin.vertices; ++k) skin.positions.push_back(vectorOf(in.positions + 3 * k));
+        to.positions = skin.positions;
+    }
+    if (in.positions_buffer != 0) {
+        if (Status copied = copyPositions(skin, in.positions_buffer); !copied) return copied;
+        to.moved = &skin.moved;
+    }
+    const Status stepped = skin.flow->step(to, seconds);
+    if ((skin.interrupted = skin.context->device->interrupted()))
+        return failed("the step was interrupted: end the stop, then create the skin anew");
+    return stepped;
+}
+
+}  // namespace rivulet::capi
 
 rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin, rivulet_error* why) {
     const rivulet_status status = guarded(why, [&]() -> Status {
@@ -107,6 +172,7 @@ rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_
         const Result<rivulet_skin_options> o = readStruct(options, "rivulet_skin_options", "options");
         if (!o) return o.error();
         if (Status can = ready(*context, Needs::drawing); !can) return can;
+        if (Status there = stillThere(*context, Needs::device); !there) return there;
         const CallScope scope(*context, Needs::drawing);
         auto made = std::make_unique<rivulet_skin>();
         if (Status done = createSkin(*context, *o, *made); !done) return done;
@@ -121,52 +187,26 @@ rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_
 void rivulet_skin_destroy(rivulet_skin* skin) { destroy(skin); }
 
 rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why) {
-    return with(skin, why, Needs::memory, [&]() -> Status {
+    return with(skin, why, Needs::device, [&]() -> Status {
         if (place == nullptr) return badInput("place is NULL");
         const vec3 at = vectorOf(place);
         if (!isFinite(at)) return badInput("place is not finite");
         constexpr double kMost = 4000;  // microlitres, as 32 bits of picolitres hold
         if (!(microlitres > 0) || microlitres > kMost)
             return badInput(fmt::format("a drop of {} microlitres: give more than 0 and at most {}", microlitres, kMost));
-        skin->flow->add(nearestPoint(skin->flow->mesh(), at), static_cast<uint32_t>(std::lround(1.0e6 * microlitres)));
+        skin->flow->add(skin->placed->nearest(at), static_cast<uint32_t>(std::lround(1.0e6 * microlitres)));
         return ok();
     });
 }
 
 rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why) {
     return with(skin, why, needsOf(inputs), [&]() -> Status {
-        const Result<rivulet_skin_inputs> input = readStruct(inputs, "rivulet_skin_inputs", "inputs");
-        if (!input) return input.error();
-        const rivulet_skin_inputs& in = *input;
-        if (!std::isfinite(seconds) || seconds > kLongestFrame)
-            return badInput(fmt::format("seconds is {}: give a finite time of at most {} s", seconds, kLongestFrame));
-        SurfaceFlowInputs to;
-        if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
-        if (in.wind != nullptr) to.wind = vectorOf(in.wind);
-        if (in.to_world != nullptr) to.toWorld = dmat4(matrixOf(in.to_world));
-        if (in.positions != nullptr) {
-            skin->positions.clear();
-            for (size_t k = 0; k < skin->vertices; ++k) skin->positions.push_back(vectorOf(in.positions + 3 * k));
-            to.positions = skin->positions;
-        }
-        if (!isWithin(to.gravity, kMostGravity) || !isWithin(to.wind, kMostGravity))
-            return badInput(fmt::format("inputs.gravity or inputs.wind is not finite, or beyond {} m/s^2 or m/s", kMostGravity));
-        if (in.to_world != nullptr && !areWithin({in.to_world, 16}, kMostDistance))
-            return badInput(fmt::format("inputs.to_world is not finite, or beyond {}", kMostDistance));
-        if (in.positions_buffer != 0)
-            if (Status can = checkPositionsBuffer(*skin, in); !can) return can;
-        if (!(seconds > 0)) return ok();
-        Device& device = *skin->context->device;
-        device.goOn();  // another owner of buffers may have been interrupted
-        if (skin->interrupted) return failed("an earlier step of the skin was interrupted: create it anew");
-        if (device.stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
-        if (in.positions_buffer != 0) {
-            if (Status copied = copyPositions(*skin, in.positions_buffer); !copied) return copied;
-            to.moved = &skin->moved;
-        }
-        const Status stepped = skin->flow->step(to, seconds);
-        if ((skin->interrupted = device.interrupted())) return failed("the step was interrupted: end the stop, then create the skin anew");
-        return stepped;
+        const Result<rivulet_skin_inputs> in = readStruct(inputs, "rivulet_skin_inputs", "inputs");
+        if (!in) return in.error();
+        if (Status sound = checkSkinStep(*skin, *in, seconds); !sound || !(seconds > 0)) return sound;
+        skin->maps->leaveOutHanging(false);
+        placeSkin(*skin, *in, skin->motion.begin + skin->motion.seconds, seconds);
+        return stepSkin(*skin, *in, in->gravity != nullptr ? vectorOf(in->gravity) : kEarth, seconds);
     });
 }
 

@@ -7,7 +7,9 @@
 #include "engine/core/json.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
+#include "fluid/capi/drawing.h"
 #include "fluid/capi/versioned.h"
+#include "fluid/capi/walls.h"
 #include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/contradictions.h"
 #include "fluid/sim/world/host_particles.h"
@@ -15,10 +17,14 @@
 
 namespace rivulet::capi {
 
-void WorldParams::visit(ParamVisitor& v) {
-    v.group({.name = "fluid", .doc = "the water"}, fluid);
+void WorldParams::visitSources(ParamVisitor& v) {
     v.list({.name = "emitters", .doc = "sources of water"}, emitters);
     v.list({.name = "sinks", .doc = "regions that remove water"}, sinks);
+}
+
+void WorldParams::visit(ParamVisitor& v) {
+    v.group({.name = "fluid", .doc = "the water"}, fluid);
+    visitSources(v);
     v.group({.name = "look", .doc = "look of the water"}, look);
 }
 
@@ -48,87 +54,6 @@ FluidParams simulated(const rivulet_world& w, const WorldParams& params) {
 Status checkScene(const WorldParams& params) {
     for (const std::string& wrong : {contradiction(params.fluid), contradiction(params.look)})
         if (!wrong.empty()) return badInput(wrong);
-    return ok();
-}
-
-Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, std::span<const uint8_t> surfaces, int resolution,
-                                            float spacing, size_t memoryLimit) {
-    Bounds bounds;
-    std::vector<MeshView> views;
-    for (const HostMesh& mesh : meshes) {
-        views.push_back(mesh.view());
-        for (const vec3& p : mesh.positions) bounds.add(p);
-    }
-    const vec3 size = bounds.size();
-    const float side = std::max({size.x, size.y, size.z});
-    VoxelFieldOptions options;
-    options.resolution = resolution > 0 ? resolution : std::clamp(static_cast<int>(std::ceil(4 * side / spacing)), 2, 512);
-    options.band = options.padding = 2 * spacing;  // a particle finds the field before it touches the wall
-    options.surfaces = surfaces;
-    if (memoryLimit > 0) options.memoryLimit = memoryLimit;
-    Result<VoxelField> field = bakeVoxelField(views, options);
-    if (!field) return field.error();
-    return std::make_unique<VoxelField>(std::move(*field));
-}
-
-// Error (badInput): it is not finite, or its rotation is not of unit length.
-Result<Pose> soundPose(const rivulet_pose& given, const std::string& name) {
-    Pose pose = poseOf(given);
-    if (!isWithin(pose.position, kMostDistance) || !(std::abs(glm::length(pose.rotation) - 1) < 0.01F))
-        return badInput(fmt::format("{} is not finite, farther than {} m, or its rotation is not of unit length", name, kMostDistance));
-    pose.rotation = glm::normalize(pose.rotation);  // a host's own arithmetic loses precision
-    return pose;
-}
-
-Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids) {
-    std::vector<HostMesh> still;
-    std::vector<uint8_t> stillSurfaces;
-    int finest = 0;
-    const float spacing = w.params.fluid.spacing;
-    if (o.walls_count > 0 && o.walls == nullptr) return badInput("walls is NULL, and walls_count is not 0");
-    const auto* at = reinterpret_cast<const std::byte*>(o.walls);
-    for (size_t k = 0; k < o.walls_count; ++k) {
-        const Result<rivulet_mesh> input =
-            readStruct(reinterpret_cast<const rivulet_mesh*>(at), "rivulet_mesh", fmt::format("walls[{}]", k));
-        if (!input) return input.error();
-        const rivulet_mesh& wall = *input;
-        at += wall.size;
-        Result<HostMesh> mesh = meshOf(wall, fmt::format("walls[{}]", k));
-        if (!mesh) return mesh.error();
-        const Surface surface{wall.friction, wall.restitution};
-        // A surface for each wall while there are enough, so that probes measure each; then equal walls share one.
-        const auto same = o.walls_count <= kMostSurfaces
-                              ? solids.surfaces.end()
-                              : std::find_if(solids.surfaces.begin(), solids.surfaces.end(), [&](const Surface& s) {
-                                    return s.friction == surface.friction && s.restitution == surface.restitution;
-                                });
-        const auto number = static_cast<size_t>(same - solids.surfaces.begin());
-        if (same == solids.surfaces.end()) solids.surfaces.push_back(surface);
-        if (number >= kMostSurfaces)
-            return badInput(
-                fmt::format("walls have more than {} different pairs of friction and restitution: let some share a pair", kMostSurfaces));
-        const auto surfaceNumber = static_cast<uint8_t>(number);
-        if (wall.moves == 0) {
-            still.push_back(std::move(*mesh));
-            stillSurfaces.push_back(surfaceNumber);
-            solids.colliders.push_back({ProbeOn::still, surfaceNumber});
-            finest = std::max(finest, wall.resolution);
-            continue;
-        }
-        const Result<Pose> pose = soundPose(wall.pose, fmt::format("walls[{}].pose", k));
-        if (!pose) return pose.error();
-        auto field = fieldOf(std::span(&*mesh, 1), std::span(&surfaceNumber, 1), wall.resolution, spacing, w.context->memoryLimit);
-        if (!field) return Error{fmt::format("walls[{}]: {}", k, field.error().message), field.error().fault};
-        solids.colliders.push_back({ProbeOn::rigid, static_cast<uint32_t>(solids.rigid.size())});
-        solids.rigid.push_back({field->get(), *pose});
-        w.poses.push_back(*pose);
-        w.fields.push_back(std::move(*field));
-    }
-    if (still.empty()) return ok();
-    auto field = fieldOf(still, stillSurfaces, finest, spacing, w.context->memoryLimit);
-    if (!field) return Error{"walls: " + field.error().message, field.error().fault};
-    solids.field = field->get();
-    w.fields.push_back(std::move(*field));
     return ok();
 }
 
@@ -245,13 +170,17 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     if (o.json != nullptr)
         if (Status read = readJson(o.json, "json", visiting(w.params)); !read) return read;
     if (Status sense = checkScene(w.params); !sense) return sense;
-    Solids solids;
-    if (Status added = addWalls(o, w, solids); !added) return added;
-    w.walls = solids.colliders;
+    if (Status added = w.walls.begin(o, w.params.fluid.spacing, context.memoryLimit, context.jobs); !added) return added;
+    Solids solids = w.walls.solids();
     if (Status added = addBodies(o, w, solids); !added) return added;
     Result<Sources> sources = sourcesOf(w.params);
     if (!sources) return sources.error();
     if (Status added = addParticles(o, *sources); !added) return added;
+    constexpr double kMostBrought = 1.0e3;  // m^3
+    if (!(o.skins_bring >= 0) || o.skins_bring > kMostBrought)
+        return badInput(fmt::format("skins_bring is {} m^3: give 0 to {}", o.skins_bring, kMostBrought));
+    sources->expectedDeposit = o.skins_bring;
+    w.exchanges = o.skins_bring > 0;
     for (size_t k = 0; k < w.params.fluid.blocks.size(); ++k)
         if (w.params.fluid.blocks[k].shape == "mesh")
             return badInput(fmt::format("fluid.blocks[{}].shape is mesh: use another shape or particles, a mesh needs a scene file", k));
@@ -276,6 +205,7 @@ rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_worl
         const Result<rivulet_world_options> o = readStruct(options, "rivulet_world_options", "options");
         if (!o) return o.error();
         if (Status can = ready(*context, Needs::drawing); !can) return can;
+        if (Status there = stillThere(*context, Needs::device); !there) return there;
         const CallScope scope(*context, Needs::drawing);
         auto made = std::make_unique<rivulet_world>();
         if (Status done = createWorld(*context, *o, *made); !done) return done;
@@ -287,7 +217,12 @@ rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_worl
     return status;
 }
 
-void rivulet_world_destroy(rivulet_world* world) { destroy(world); }
+void rivulet_world_destroy(rivulet_world* world) {
+    rivulet_error why;
+    if (world != nullptr && world->recording && rivulet_world_record(world, nullptr, &why) != RIVULET_OK)
+        silently([&] { world->context->log.error(why.message); });
+    destroy(world);
+}
 
 rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
@@ -295,9 +230,12 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (!input) return input.error();
         const rivulet_inputs& in = *input;
         if (!std::isfinite(seconds)) return badInput("seconds is not finite");
-        if (in.poses != nullptr && in.poses_count != world->poses.size())
-            return badInput(
-                fmt::format("{} poses were given for {} walls that move: give one for each", in.poses_count, world->poses.size()));
+        const size_t moving = world->walls.moving();
+        if (in.poses != nullptr && in.poses_count != moving)
+            return badInput(fmt::format("{} poses were given for {} walls that move: give one for each", in.poses_count, moving));
+        const size_t deforming = world->walls.deforming();
+        if (in.shapes != nullptr && in.shapes_count != deforming)
+            return badInput(fmt::format("{} shapes were given for {} walls that deform: give one for each", in.shapes_count, deforming));
         FluidInputs to;
         if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
         std::vector<Pose> poses;
@@ -306,11 +244,20 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
             if (!pose) return pose.error();
             poses.push_back(*pose);
         }
-        to.poses = poses;
-        if (Status sound = world->world->checkInputs(to, seconds); !sound) return sound;
+        for (const std::string& wrong : world->walls.arrive(*world->world)) world->context->log.error(wrong);
+        const Walls::Targets before = world->walls.targets();
+        if (in.poses != nullptr) world->walls.move(poses);
+        for (size_t k = 0; in.shapes != nullptr && k < deforming; ++k)
+            if (in.shapes[k] != nullptr) world->walls.deform(k, in.shapes[k]);
+        const Walls::Targets targets = world->walls.targets();
+        to.poses = targets.poses;
+        const std::vector<std::span<const vec3>> shapes(targets.shapes.begin(), targets.shapes.end());
+        to.shapes = shapes;
+        if (Status sound = world->world->checkInputs(to, seconds); !sound) {
+            world->walls.moveBack(before);
+            return sound;
+        }
         if (world->callbacks) world->callbacks->thrown.clear();
-        if (in.poses != nullptr) world->poses = std::move(poses);
-        to.poses = world->poses;
         rivulet_context& context = *world->context;
         collectTimes(context);
         to.deviceMs = context.deviceMs - world->deviceMs;  // of all its worlds: passes are not counted per world
@@ -319,6 +266,7 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (world->world->interrupted()) return failed("the step was interrupted: end the stop, then reset or restore the world");
         if (context.device->stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
         if (Status stepped = world->world->lastStep(); !stepped) return stepped;
+        if (Status recorded = recordFrame(*world); !recorded) return recorded;
         return thrown(*world);
     });
 }
@@ -327,9 +275,52 @@ rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         if (world->callbacks) world->callbacks->thrown.clear();
         world->world->reset();
-        world->poses = world->world->poses();
+        world->walls.follow(world->world->poses());
         if (Status back = world->world->lastStep(); !back) return back;
         return thrown(*world);
+    });
+}
+
+rivulet_status rivulet_world_add_wall(rivulet_world* world, const rivulet_mesh* wall, uint32_t* id, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (wall == nullptr || id == nullptr) return badInput("wall or id is NULL");
+        if (Status may = world->world->mayChangeWalls(); !may) return may;
+        const Result<uint32_t> added = world->walls.add(*wall);
+        if (!added) return added.error();
+        *id = *added;
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_remove_wall(rivulet_world* world, uint32_t id, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (Status may = world->world->mayChangeWalls(); !may) return may;
+        return world->walls.remove(*world->world, id);
+    });
+}
+
+rivulet_status rivulet_world_wall(const rivulet_world* world, uint32_t id, int32_t* state, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        if (state == nullptr) return badInput("state is NULL");
+        const Result<rivulet_wall_state> found = world->walls.stateOf(id);
+        if (!found) return found.error();
+        *state = *found;
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_set_sources(rivulet_world* world, const char* json, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (json == nullptr) return badInput("json is NULL: give, for example, \"{\\\"emitters\\\": []}\"");
+        WorldParams changed = world->params;
+        changed.emitters.clear();
+        changed.sinks.clear();
+        if (Status read = readJson(json, "json", [&changed](ParamVisitor& v) { changed.visitSources(v); }); !read) return read;
+        Result<Sources> sources = sourcesOf(changed);
+        if (!sources) return sources.error();
+        if (Status taken = world->world->setSources(*sources); !taken) return taken;
+        std::swap(world->params, changed);
+        return ok();
     });
 }
 
@@ -341,7 +332,7 @@ rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, r
         if (Status same = sameFixedValues(fixedValues(visiting(world->params)), fixedValues(visiting(changed))); !same)
             return badInput(fmt::format("{}: this parameter is fixed; create a new world to change it", assignment));
         if (changed.emitters.size() != world->params.emitters.size() || changed.sinks.size() != world->params.sinks.size())
-            return badInput(fmt::format("{}: the number of emitters and sinks is fixed; create a new world to change it", assignment));
+            return badInput(fmt::format("{}: the number of emitters and sinks is set with rivulet_world_set_sources", assignment));
         if (Status sense = checkScene(changed); !sense) return sense;
         Result<Sources> sources = sourcesOf(changed);
         if (!sources) return sources.error();
@@ -422,7 +413,7 @@ rivulet_status rivulet_world_restore(rivulet_world* world, const char* path, riv
         Result<WorldState> state = readState(path);
         if (!state) return state.error();
         Status restored = world->world->restore(*state);
-        if (restored) world->poses = world->world->poses();
+        if (restored) world->walls.follow(world->world->poses());
         return restored;
     });
 }

@@ -17,8 +17,6 @@ constexpr double kBallDrag = 0.6;                                  // drag coeff
 // it swings. Chosen by eye.
 constexpr double kNeck = 3, kSwings = 3;
 
-double radiusOf(const AirDrop& d) { return std::cbrt(3 * d.picolitres * kPicolitre / (4 * std::numbers::pi)); }
-
 double inertial(const AirDrop& d, const SurfaceFlowParams& p) {
     return std::sqrt(double{p.density} * std::pow(radiusOf(d), 3) / double{p.surfaceTension});
 }

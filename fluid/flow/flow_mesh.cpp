@@ -149,12 +149,14 @@ vec3 positionOf(const FlowMesh& m, const SkinPoint& at) {
     return (1 - at.b1 - at.b2) * m.rest[c[0]] + at.b1 * m.rest[c[1]] + at.b2 * m.rest[c[2]];
 }
 
-SkinPoint nearestPoint(const FlowMesh& m, const vec3& given) {
+SkinPoint nearestPoint(const FlowMesh& m, const vec3& x) { return nearestPoint(m, m.rest, x); }
+
+SkinPoint nearestPoint(const FlowMesh& m, std::span<const vec3> places, const vec3& given) {
     const dvec3 x(given);
     SkinPoint best;
     double nearest = std::numeric_limits<double>::max();
     for (uint32_t t = 0; t < m.triangleCount(); ++t) {
-        const dvec3 a(m.rest[m.corner[3 * t]]), b(m.rest[m.corner[3 * t + 1]]), c(m.rest[m.corner[3 * t + 2]]);
+        const dvec3 a(places[m.corner[3 * t]]), b(places[m.corner[3 * t + 1]]), c(places[m.corner[3 * t + 2]]);
         const std::array<double, 3> w = nearestWeights(x, a, b, c);
         const dvec3 apart = w[0] * a + w[1] * b + w[2] * c - x;
         const double d = glm::dot(apart, apart);

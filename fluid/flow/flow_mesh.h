@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,8 @@ struct SkinPoint {
 };
 vec3 positionOf(const FlowMesh& mesh, const SkinPoint& at);  // m, at rest
 
-// The point of the skin nearest to `x` (m, at rest). Tests every triangle.
+// The point of the skin nearest to `x` (m, at rest; or as the skin is bent: `places` m, of each of the mesh's). Tests every triangle.
 SkinPoint nearestPoint(const FlowMesh& mesh, const vec3& x);
+SkinPoint nearestPoint(const FlowMesh& mesh, std::span<const vec3> places, const vec3& x);
 
 }  // namespace rivulet

@@ -2,11 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "shaders/flow/flow_step.h"
 
 namespace rivulet {
+
+void addPendant(const HungDrop& d, const vec3& absorption, std::vector<vec4>& rows) {
+    double widest = 0;
+    for (int k = 0; k <= 20; ++k) widest = std::max(widest, d.profile.square(0.05 * k));
+    rows.emplace_back(vec3(d.foot), static_cast<float>(d.profile.length));
+    rows.emplace_back(vec3(d.axis), static_cast<float>(d.opacity));
+    rows.emplace_back(d.profile.swell);
+    rows.emplace_back(vec3(d.lean), static_cast<float>(std::sqrt(widest)));
+    rows.emplace_back(absorption, 0.0F);
+}
+
+double radiusOf(const AirDrop& d) {
+    constexpr double kPicolitre = 1.0e-15;  // m^3
+    return std::cbrt(3 * d.picolitres * kPicolitre / (4 * std::numbers::pi));
+}
 
 PlacedFlow::PlacedFlow(SurfaceFlow& flow, Motion motion) : flow_(&flow), motion_(std::move(motion)), search_(flow.mesh()) { moveTo(0); }
 
@@ -32,6 +48,11 @@ std::optional<SkinSearch::Hit> PlacedFlow::meets(const dvec3& from, const dvec3&
     look();
     const dmat4 now = glm::inverse(toWorld_), later = then == time_ ? now : glm::inverse(motion_(then));
     return search_.first(vec3(now * glm::dvec4(from, 1)), vec3(later * glm::dvec4(to, 1)));
+}
+
+SkinPoint PlacedFlow::nearest(const vec3& x) {
+    look();
+    return nearestPoint(flow_->mesh(), search_.places(), x);
 }
 
 void PlacedFlow::land(const SkinSearch::Hit& where, const AirDrop& drop) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "fluid/flow/skin_search.h"
 #include "fluid/flow/surface_flow.h"
@@ -21,6 +22,9 @@ struct HungDrop {
     dvec3 down() const { return glm::normalize(axis + lean); }  // at the tip
 };
 
+// Appends the five rows of a hanging drop to FluidView::pendants. absorption: 1/m, of its liquid.
+void addPendant(const HungDrop& drop, const vec3& absorption, std::vector<vec4>& rows);
+
 // A drop in the air: a ball.
 struct AirDrop {
     dvec3 position{0.0}, velocity{0.0};  // m, m/s, in the world
@@ -29,6 +33,7 @@ struct AirDrop {
     std::optional<HungDrop> hung = {};  // that let go: what it was, `age` before
     double age = 0;                     // s
 };
+double radiusOf(const AirDrop& drop);  // m
 
 class PlacedFlow {
   public:
@@ -45,6 +50,8 @@ class PlacedFlow {
     // it is now when the path begins, and where its motion has it at `then` (s) when it ends. Once for each shape it reads the skin's
     // vertices back: on a GPU this waits.
     std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
+    // The point of the skin nearest to `x`, m in the skin's frame, in the shape that it has now. Waits as meets().
+    SkinPoint nearest(const vec3& x);
     // A drop that comes to rest on the skin there.
     void land(const SkinSearch::Hit& where, const AirDrop& drop);
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "engine/compute/device_cl.h"
-#include "engine/compute/device_cpu.h"
 #include "engine/compute/kernel_source.h"
 #include "engine/gpu/current_context.h"
 #include "engine/gpu/device_gl.h"
@@ -72,16 +71,17 @@ Status settleBackend(std::string& backend, const char* otherwise, const std::str
     return checkClDevice(device);
 }
 
-std::unique_ptr<Device> makeCpu() {
+std::unique_ptr<Device> makeCpu(const CpuOptions& options) {
     const std::vector<CpuKernelRow> rows = cpuKernels();
-    return makeCpuDevice(rows);
+    return makeCpuDevice(rows, options);
 }
 
-std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log, const std::string& clDevice) {
+std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log, const std::string& clDevice,
+                                   const CpuOptions& cpu) {
     BackendChoice choice = chooseBackend(wanted, gl);
     if (choice.backend == Backend::cpu) {
         if (wanted == "gl") log.notice(fmt::format("--backend gl: {}; the cpu simulates", choice.why));
-        return makeCpu();
+        return makeCpu(cpu);
     }
     ShaderFiles files = ShaderFiles::developer();
     if (choice.backend == Backend::gl) return makeGlDevice(files, log);
@@ -89,7 +89,7 @@ std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, c
         makeClDevice(files, log, {.device = clDevice, .gl = gl.present() ? gpu::currentContext() : GlContext{}});
     if (device) return std::move(*device);
     log.notice(fmt::format("--backend {}: {}; the cpu simulates", wanted, device.error().message));
-    return makeCpu();
+    return makeCpu(cpu);
 }
 
 }  // namespace rivulet

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/compute/device.h"
+#include "engine/compute/device_cpu.h"
 #include "engine/core/log.h"
 #include "engine/core/table.h"
 
@@ -40,8 +40,9 @@ Status settleBackend(std::string& backend, const char* otherwise, const std::str
 
 // The wanted device; of cl the one that `clDevice` names (ClOptions::device). If it is absent, a cpu device is returned and `log` gets a
 // notice; there is no Error. If `gl` is present, its context must be current and outlive the device: OpenCL shares memory with it where
-// possible.
-std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log, const std::string& clDevice = {});
-std::unique_ptr<Device> makeCpu();  // on all cores
+// possible. `cpu`: of a cpu device.
+std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log, const std::string& clDevice = {},
+                                   const CpuOptions& cpu = {});
+std::unique_ptr<Device> makeCpu(const CpuOptions& options = {});
 
 }  // namespace rivulet

@@ -239,6 +239,41 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
     return out;
 }
 
+Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParams& look) {
+    if (s.empty()) return badInput("the snapshot is empty: take one of a world first");
+    FluidView out;
+    if (s.onGpu_) {
+        facts_ = {.way = "copied on the GPU", .why = {}, .ms = 0, .bytes = 0, .waits = ring_.waits()};
+        out.count = s.count_;
+        out.spacing = s.frame_.spacing;
+        out.radius = look.radiusSpacings * out.spacing;
+        out.bounds = s.frame_.box;
+        out.position = s.position_.name();
+        out.velocity = look.showsNormals() && s.normal_.used ? s.normal_.name() : s.velocity_.name();
+        out.id = s.id_.name();
+        out.absorption = s.absorption_.name();
+        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) out.ellipsoids[k] = s.ellipsoids_[k].name();
+        out.foam = {s.foam_[0].name(), s.foam_[1].name()};
+        out.foamCount = s.foamCount_;
+    } else {
+        Result<FluidView> uploaded = view(s.frame_, look);
+        if (!uploaded) return uploaded;
+        out = *uploaded;
+    }
+    out.viscosity = s.viscosity_;
+    if (!s.wetSurface_) return out;
+    if (Status held = holdWetCells(s.wetSurface_); !held) return held.error();
+    out.wetCells = wetCells_.name();
+    out.wetCellBytes = s.wetSurface_->cells.size() * sizeof(int32_t);
+    out.wetnessBytes = s.wetSurface_->points.size() * sizeof(float);
+    out.wetness = s.wet_.name();
+    if (s.onGpu_) return out;
+    if (Status room = wetness_.makeRoom(out.wetnessBytes); !room) return room.error();
+    wetness_.memory.writeAll(std::span<const float>(s.wetness_));
+    out.wetness = wetness_.memory.name();
+    return out;
+}
+
 bool FluidUpload::holdsSleepers(std::span<const Array> arrays, bool hurried, const FluidView& of) const {
     const auto held = [this](const Array& a) {
         return !a.ofParticles || (a.to->memory.bytes() >= a.bytes && std::find(held_.of.begin(), held_.of.end(), a.to) != held_.of.end());

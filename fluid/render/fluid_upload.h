@@ -10,6 +10,7 @@
 #include "engine/compute/gl_sharing.h"
 #include "engine/gpu/staging_ring.h"
 #include "fluid/io/recording.h"
+#include "fluid/render/fluid_snapshot.h"
 #include "fluid/render/fluid_view.h"
 #include "fluid/render/look_params.h"
 #include "fluid/sim/world/fluid_world.h"
@@ -33,6 +34,8 @@ class FluidUpload {
     // `drops`: those in the air, `pendants`: those that hang, as FluidView has them.
     Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {},
                            std::span<const vec4> pendants = {});
+    // Valid until the next view() and until the snapshot takes another state. Error (badInput): the snapshot is empty; (failed): as above.
+    Result<FluidView> view(const FluidSnapshot& snapshot, const FluidLookParams& look);
     // The same for a recorded frame.
     Result<FluidView> view(const RecordedFrame& frame, const FluidLookParams& look);
     size_t bytes() const;                                   // of OpenGL memory that it holds

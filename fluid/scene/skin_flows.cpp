@@ -134,15 +134,7 @@ Status SkinFlows::draw() {
 
 std::vector<vec4> SkinFlows::pendants() const {
     std::vector<vec4> rows;
-    const auto add = [&](const HungDrop& d, size_t skin) {
-        double widest = 0;
-        for (int k = 0; k <= 20; ++k) widest = std::max(widest, d.profile.square(0.05 * k));
-        rows.emplace_back(vec3(d.foot), static_cast<float>(d.profile.length));
-        rows.emplace_back(vec3(d.axis), static_cast<float>(d.opacity));
-        rows.emplace_back(d.profile.swell);
-        rows.emplace_back(vec3(d.lean), static_cast<float>(std::sqrt(widest)));
-        rows.emplace_back(skins_[skin]->params().look.absorption, 0.0F);
-    };
+    const auto add = [&](const HungDrop& d, size_t skin) { addPendant(d, skins_[skin]->params().look.absorption, rows); };
     for (size_t k = 0; k < placed_.size(); ++k)
         for (const HungDrop& d : placed_[k]->hanging()) add(d, k);
     for (const AirDrops::LetGo& d : air_.letGo(placed_)) add(d.shape, d.skin);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "fluid/io/world_frame.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/session.h"
 
@@ -29,15 +30,6 @@ Status sameScene(const std::string& path, std::string_view recorded, std::string
     return ok();
 }
 
-// Those of `items` that `kept` names.
-template <class T>
-std::vector<T> chosen(const std::vector<T>& items, const std::vector<uint32_t>& kept) {
-    std::vector<T> out;
-    out.reserve(kept.size());
-    for (const uint32_t i : kept) out.push_back(items[i]);
-    return out;
-}
-
 }  // namespace
 
 std::string aboutOf(const SceneFile& scene) {
@@ -52,39 +44,8 @@ std::string aboutOf(const SceneFile& scene) {
 }
 
 RecordedFrame frameOf(const Session& session) {
-    const FluidWorld& world = session.world();
-    Device& device = world.device();
-    const ParticleView particles = world.particles();
     RecordedFrame frame;
-    frame.time = world.time();
-    frame.spacing = particles.spacing;
-    frame.halves = device.backend() != Backend::gl && !device.glShare().by;  // as FluidUpload brings them over
-    frame.box.add(world.params().box.min);
-    frame.box.add(world.params().box.max);
-    if (particles.count > 0) {
-        // Free slots and samples on bodies are not drawn.
-        const std::vector<vec4> position = device.readAll<vec4>(*particles.drawn, particles.slots);
-        std::vector<uint32_t> kept;
-        for (uint32_t i = 0; i < position.size(); ++i)
-            if (!(position[i].w < 0)) kept.push_back(i);
-        const auto read = [&](const Buffer* from) {
-            return from == nullptr ? std::vector<vec4>() : chosen(device.readAll<vec4>(*from, particles.slots), kept);
-        };
-        frame.position = chosen(position, kept);
-        frame.velocity = read(particles.velocity);
-        frame.id = chosen(device.readAll<uint32_t>(*particles.id, particles.slots), kept);
-        frame.normal = read(particles.normal);
-        frame.absorption = read(particles.absorption);
-        for (size_t k = 0; k < frame.ellipsoids.size(); ++k) frame.ellipsoids[k] = read(particles.ellipsoids[k]);
-    }
-    if (particles.foam != nullptr && particles.foamSlots > 0) {
-        const std::vector<vec4> foam = device.readAll<vec4>(*particles.foamDrawn, particles.foamSlots);
-        std::vector<uint32_t> kept;
-        for (uint32_t i = 0; i < foam.size(); ++i)
-            if (foam[i].w > 0) kept.push_back(i);
-        frame.foam = chosen(foam, kept);
-        frame.foamVelocity = chosen(device.readAll<vec4>(*particles.foamVelocity, particles.foamSlots), kept);
-    }
+    frameOf(session.world(), frame);
     session.placesInto(frame);
     return frame;
 }

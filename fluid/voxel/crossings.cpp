@@ -90,14 +90,14 @@ void setRun(VoxelGrid& grid, size_t first, size_t end) {
 void sortAndSet(ColumnCrossings& crossings, VoxelGrid& grid) {
     // 32 columns fill whole words, so tasks share no word.
     const size_t columns = columnsOf(grid), blocks = (columns + 31) / 32, across = static_cast<size_t>(grid.size.x);
-    parallelRanges(tbb::blocked_range<size_t>(0, blocks, 8), [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t k = 32 * range.begin(); k < std::min(32 * range.end(), columns); ++k) {
-            const auto first = crossings.items.begin() + crossings.start[k], end = crossings.items.begin() + crossings.start[k + 1];
-            if (first == end) continue;
-            std::sort(first, end);
+    parallelParts(blocks, 8, [&](size_t begin, size_t end) {
+        for (size_t k = 32 * begin; k < std::min(32 * end, columns); ++k) {
+            const auto first = crossings.items.begin() + crossings.start[k], last = crossings.items.begin() + crossings.start[k + 1];
+            if (first == last) continue;
+            std::sort(first, last);
             int winding = 0;
             size_t from = 0;
-            for (auto item = first; item != end; ++item) {
+            for (auto item = first; item != last; ++item) {
                 const auto to = static_cast<size_t>(crossedVoxel(*item));
                 if (winding != 0) setRun(grid, k * across + from, k * across + to);
                 winding += crossedChange(*item);

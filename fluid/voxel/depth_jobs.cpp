@@ -131,8 +131,8 @@ std::vector<DepthJob> depthJobs(std::span<const MeshView> meshes, const VoxelGri
 }
 
 void drawDepthJobs(std::span<const DepthJob> jobs, const DepthParams& params, std::span<const DepthBox> boxes, std::span<uint32_t> images) {
-    parallelRanges(tbb::blocked_range<size_t>(0, jobs.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t k = range.begin(); k != range.end(); ++k) draw(jobs[k], params, boxes, images);
+    parallelParts(jobs.size(), 1024, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k != end; ++k) draw(jobs[k], params, boxes, images);
     });
 }
 

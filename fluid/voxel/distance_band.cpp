@@ -2,10 +2,10 @@
 // fluid/voxel/kernels/band_brick.cpp bakes one brick.
 #include "fluid/voxel/distance_band.h"
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-
 #include <array>
 #include <bit>
+#include <memory>
+#include <mutex>
 
 #include "engine/core/parallel.h"
 #include "fluid/voxel/kernels/band_brick.h"
@@ -175,24 +175,39 @@ struct Bake {
         if (triangles.size() <= kTargetsAtOnce) {
             all.resize(triangles.size());
             allDiscs.resize(triangles.size());
-            parallelRanges(tbb::blocked_range<size_t>(0, all.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
-                for (size_t k = range.begin(); k != range.end(); ++k) {
+            parallelParts(all.size(), 256, [&](size_t begin, size_t end) {
+                for (size_t k = begin; k != end; ++k) {
                     const Target target = targetOf(triangles[k], width, furthest);
                     all[k] = target.exact;
                     allDiscs[k] = target.disc;
                 }
             });
         }
-        tbb::enumerable_thread_specific<Workspace> workspaces;
-        parallelFor(0, band.bricks().z, [&](int layer) { bakeLayer(layer, workspaces.local()); });
+        // A loop within a layer may run a part of another layer on the same thread: a workspace belongs to a layer, not to a thread.
+        std::mutex mutex;
+        std::vector<std::unique_ptr<Workspace>> idle;
+        parallelFor(0, band.bricks().z, [&](int layer) {
+            std::unique_ptr<Workspace> work;
+            {
+                const std::scoped_lock lock(mutex);
+                if (!idle.empty()) {
+                    work = std::move(idle.back());
+                    idle.pop_back();
+                }
+            }
+            if (!work) work = std::make_unique<Workspace>();
+            bakeLayer(layer, *work);
+            const std::scoped_lock lock(mutex);
+            idle.push_back(std::move(work));
+        });
     }
 
     void sortIntoLayers() {
         const auto layers = static_cast<size_t>(band.bricks().z);
         layerStart.assign(layers + 1, 0);
         reaches.resize(triangles.size());
-        parallelRanges(tbb::blocked_range<size_t>(0, reaches.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
-            for (size_t k = range.begin(); k != range.end(); ++k) reaches[k] = reachOf(band, triangles[k]);
+        parallelParts(reaches.size(), 1024, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k != end; ++k) reaches[k] = reachOf(band, triangles[k]);
         });
         const auto forLayers = [&](const auto& body) {
             for (size_t k = 0; k < reaches.size(); ++k) {

@@ -11,6 +11,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/readable_bytes.h"
 #include "fluid/voxel/distance_band.h"
+#include "fluid/voxel/field_bake.h"
 #include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/mesh_defects.h"
 #include "fluid/voxel/voxelize_solid.h"
@@ -84,8 +85,8 @@ void signInside(std::span<const MeshView> meshes, VoxelField& field) {
     inside.origin = field.surface.origin - 0.5F * field.surface.voxel;
     for (const CleanMesh& mesh : cleaned) {
         voxelizeSolid(mesh, inside);
-        parallelRanges(tbb::blocked_range<size_t>(0, field.distance.size(), 65536), [&](const tbb::blocked_range<size_t>& range) {
-            for (size_t k = range.begin(); k != range.end(); ++k) {
+        parallelParts(field.distance.size(), 65536, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k != end; ++k) {
                 if (((inside.bits[k >> 3U] >> (k & 7U)) & 1U) != 0) field.distance[k] = -std::abs(field.distance[k]);
             }
         });
@@ -125,7 +126,15 @@ bool VoxelField::inside(const vec3& p) const {
     return distance[row * static_cast<size_t>(surface.size.x + 1) + static_cast<size_t>(c.x)] < 0;
 }
 
-Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra) {
+namespace {
+
+struct Plan {
+    MeshExtent extent;
+    FieldLayout layout;
+};
+
+// The checks of a bake.
+Result<Plan> planOf(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra) {
     if (options.resolution < kMinResolution || options.resolution > kMaxResolution)
         return badInput(
             fmt::format("The resolution of a voxel field must be {}..{}, not {}.", kMinResolution, kMaxResolution, options.resolution));
@@ -150,7 +159,20 @@ Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bound
     // Kernels count voxels and points in 32 bits.
     const double limit = std::min(static_cast<double>(options.memoryLimit), 4294967295.0 * sizeof(float));
     if (!(layout.bytes <= limit)) return tooMuchMemory(place, options, layout.bytes, limit);
+    return Plan{extent, layout};
+}
 
+}  // namespace
+
+Status checkVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
+    const Result<Plan> plan = planOf(meshes, nullptr, options, 0);
+    return plan ? ok() : Status(plan.error());
+}
+
+Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra) {
+    const Result<Plan> plan = planOf(meshes, reach, options, extra);
+    if (!plan) return plan.error();
+    const auto& [extent, layout] = *plan;
     try {
         VoxelField field;
         VoxelGrid& grid = field.surface;

@@ -19,6 +19,11 @@ constexpr int kSkippedBrick = 16;  // cells; the fastest of 4, 8 and 16
 constexpr uint8_t kAir = 0, kShell = 1, kFirstColour = 2, kColours = 126;
 constexpr uint8_t kCutAway = 128;  // added to the previous value
 
+// Pixels of the picture.
+struct Tile {
+    ivec2 low, size;
+};
+
 struct Hit {
     ivec3 cell{0};
     vec3 place{0.0F};
@@ -286,11 +291,10 @@ class View {
     class Steps {
       public:
         explicit Steps(const VoxelViewOptions& options) : options_(options) {}
-        template <class Tile>
         void done(const Tile& tile, double weight) {
             if (!options_.progress) return;
             const std::scoped_lock one(mutex_);
-            share_ += weight * static_cast<double>(tile.rows().size() * tile.cols().size()) /
+            share_ += weight * static_cast<double>(tile.size.x) * static_cast<double>(tile.size.y) /
                       (static_cast<double>(options_.width) * static_cast<double>(options_.height));
             options_.progress(std::min(share_, 1.0));
         }
@@ -310,12 +314,16 @@ class View {
     template <class Body>
     void forTiles(const Body& body) const {
         constexpr int kTile = 16;
-        parallelRanges(tbb::blocked_range2d<int>(0, options_.height, kTile, 0, options_.width, kTile), body);
+        const ivec2 all(options_.width, options_.height), tiles = (all + kTile - 1) / kTile;
+        parallelFor(0, tiles.x * tiles.y, [&](int k) {
+            const ivec2 low = kTile * ivec2(k % tiles.x, k / tiles.x);
+            body(Tile{low, glm::min(ivec2(kTile), all - low)});
+        });
     }
-    template <class Tile, class Body>
+    template <class Body>
     static void forPixels(const Tile& tile, const Body& body) {
-        for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
-            for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) body(x, y);
+        for (int y = tile.low.y; y < tile.low.y + tile.size.y; ++y)
+            for (int x = tile.low.x; x < tile.low.x + tile.size.x; ++x) body(x, y);
     }
 
     Pixel look(int x, int y, Kept& kept, float unit) const {

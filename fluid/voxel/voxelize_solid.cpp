@@ -1,11 +1,8 @@
 #include "fluid/voxel/voxelize_solid.h"
 
-#include <oneapi/tbb/task_arena.h>
-
 #include <limits>
 #include <new>
 #include <optional>
-#include <thread>
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/voxel/crossings.h"
@@ -48,13 +45,8 @@ Status voxelizeSolid(Device& device, const CleanMesh& mesh, VoxelGrid& inside, c
     const auto told = [](bool done) { return done ? ok() : failed("Voxelising was cancelled."); };
     try {
         if (device.backend() == Backend::cpu) {
-            bool done = false;
-            // If the arena has no slot for the caller, another thread does its work and must not call back.
-            const auto mine = [&, caller = std::this_thread::get_id()](double share) {
-                return !progress || std::this_thread::get_id() != caller || progress(share);
-            };
-            tbb::task_arena(static_cast<CpuDevice&>(device).threads()).execute([&] { done = voxelizeSolid(mesh, inside, mine); });
-            return told(done);
+            const JobsScope scope(static_cast<CpuDevice&>(device).jobs());
+            return told(voxelizeSolid(mesh, inside, progress));
         }
         if (inside.count() > std::numeric_limits<uint32_t>::max())  // kernels count voxels in 32 bits
             return told(voxelizeSolid(mesh, inside, progress));

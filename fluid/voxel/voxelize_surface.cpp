@@ -1,8 +1,6 @@
 #include "fluid/voxel/voxelize_surface.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <array>
 #include <atomic>
 #include <limits>
@@ -188,9 +186,9 @@ Status onDevice(Device& device, const GridTriangles& triangles, VoxelGrid& grid)
 }  // namespace
 
 void voxelizeSurface(const GridTriangles& triangles, VoxelGrid& grid) {
-    parallelRanges(tbb::blocked_range<size_t>(0, triangles.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+    parallelParts(triangles.size(), 256, [&](size_t begin, size_t end) {
         PreparedOverlap p;
-        for (size_t k = range.begin(); k != range.end(); ++k) {
+        for (size_t k = begin; k != end; ++k) {
             prepareOverlap(triangles, k, grid, p);
             if (!p.empty) setTriangle(p, grid);
         }
@@ -199,12 +197,14 @@ void voxelizeSurface(const GridTriangles& triangles, VoxelGrid& grid) {
 
 Status voxelizeSurface(Device& device, const GridTriangles& triangles, VoxelGrid& grid) {
     try {
-        if (device.backend() == Backend::cpu)
-            tbb::task_arena(static_cast<CpuDevice&>(device).threads()).execute([&] { voxelizeSurface(triangles, grid); });
-        else if (grid.count() > std::numeric_limits<uint32_t>::max())  // kernels count voxels in 32 bits
+        if (device.backend() == Backend::cpu) {
+            const JobsScope scope(static_cast<CpuDevice&>(device).jobs());
             voxelizeSurface(triangles, grid);
-        else
+        } else if (grid.count() > std::numeric_limits<uint32_t>::max()) {  // kernels count voxels in 32 bits
+            voxelizeSurface(triangles, grid);
+        } else {
             return onDevice(device, triangles, grid);
+        }
         return ok();
     } catch (const std::bad_alloc&) {
         return failed("Not enough memory for surface voxels; lower the resolution.");

@@ -196,7 +196,7 @@ class WindingTree::Descent {
             descend(child);
         };
         if (cell.size > kPatchCell)
-            parallelFor(0, 8, half, tbb::simple_partitioner());
+            parallelFor(0, 8, half);
         else
             for (int k = 0; k < 8; ++k) half(k);
     }

@@ -2,10 +2,10 @@
 #include "fluid/voxel/deforming_field.h"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <functional>
 
+#include "engine/core/jobs.h"
 #include "fluid/voxel/distance_band.h"
 #include "tests/unit/voxel_test_meshes.h"
 
@@ -147,7 +147,8 @@ TEST(VoxelDeforming, SameForAnyNumberOfThreads) {
     const Places places = mapped(mesh.positions, [](const vec3& p) { return p + vec3(0, 0.3F * std::sin(4.0F * p.x * p.z), 0); });
     DeformingField many = create(mesh, 40);
     ASSERT_TRUE(many.update(places));
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Workers one(1);
+    const JobsScope scope(one.jobs());
     DeformingField alone = create(mesh, 40);
     ASSERT_TRUE(alone.update(places));
     EXPECT_TRUE(many.field().distance == alone.field().distance && many.field().normal == alone.field().normal);

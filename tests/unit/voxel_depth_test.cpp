@@ -2,11 +2,11 @@
 #include "fluid/voxel/voxelize_depth.h"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <array>
 
 #include "engine/compute/device_cpu.h"
+#include "engine/core/jobs.h"
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/unit/voxel_test_meshes.h"
 
@@ -257,7 +257,8 @@ TEST(VoxelDepth, SameForAnyNumberOfThreads) {
     const Mesh mesh = test::makeJumble(3, 210);
     const VoxelGrid grid = gridAmid(mesh, 48);
     const DepthVoxels many = voxelize(mesh, grid);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Workers one(1);
+    const JobsScope scope(one.jobs());
     const DepthVoxels alone = voxelize(mesh, grid);
     EXPECT_EQ(many.surface.bits, alone.surface.bits);
     expectSameLabels(many.labels, alone.labels);

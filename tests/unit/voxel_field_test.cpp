@@ -2,8 +2,8 @@
 #include "fluid/voxel/voxel_field.h"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
+#include "engine/core/jobs.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet::voxel_field_test {
@@ -237,7 +237,8 @@ TEST(VoxelField, PaddingHoldsTheBand) {
 TEST(VoxelField, SameForAnyNumberOfThreads) {
     const Mesh mesh = test::makeJumble(3, 210);
     const VoxelField many = bake(mesh, 48);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Workers one(1);
+    const JobsScope scope(one.jobs());
     const VoxelField alone = bake(mesh, 48);
     EXPECT_EQ(many.surface.bits, alone.surface.bits);
     EXPECT_EQ(many.distance, alone.distance);

@@ -2,11 +2,12 @@
 #include "fluid/voxel/labels.h"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <array>
 #include <random>
 #include <set>
+
+#include "engine/core/jobs.h"
 
 namespace rivulet::voxel_labels_test {
 namespace {
@@ -190,7 +191,8 @@ TEST(VoxelLabels, OneOpenVoxelConnectsADiagonalDoesNot) {
 TEST(VoxelLabels, SameForAnyNumberOfThreads) {
     const VoxelGrid surface = randomGrid(ivec3(70, 60, 90), 0.68, 11), inside = randomGrid(ivec3(70, 60, 90), 0.5, 12);
     const VoxelLabels many = labelRegions(surface, &inside);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Workers one(1);
+    const JobsScope scope(one.jobs());
     const VoxelLabels alone = labelRegions(surface, &inside);
     EXPECT_EQ(many.rowStart, alone.rowStart);
     ASSERT_EQ(many.runs.size(), alone.runs.size());

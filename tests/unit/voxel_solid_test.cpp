@@ -2,10 +2,10 @@
 #include "fluid/voxel/voxelize_solid.h"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <numbers>
 
+#include "engine/core/jobs.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet::voxel_solid_test {
@@ -278,7 +278,8 @@ TEST(VoxelSolid, TheSameForAnyNumberOfThreads) {
     const Mesh mesh = without(test::makeSphere(vec3(0), 1.0F, 24), [](size_t t) { return t % 11 == 0; });
     VoxelGrid one = gridAround(mesh, 61), many = one;
     {
-        const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+        const Workers single(1);
+        const JobsScope scope(single.jobs());
         voxelizeSolid(cleaned(mesh), one);
     }
     voxelizeSolid(cleaned(mesh), many);
@@ -286,7 +287,8 @@ TEST(VoxelSolid, TheSameForAnyNumberOfThreads) {
     const Mesh loose = looseTriangles(1500, 0.1F, false);
     VoxelGrid oneOfLoose = gridAround(loose, 20), manyOfLoose = oneOfLoose;
     {
-        const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+        const Workers single(1);
+        const JobsScope scope(single.jobs());
         voxelizeSolid(cleaned(loose), oneOfLoose);
     }
     voxelizeSolid(cleaned(loose), manyOfLoose);

@@ -1,7 +1,7 @@
 // Surface voxels against an independent oracle: all thirteen separating axes in long double, at every voxel near every triangle.
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
+#include "engine/core/jobs.h"
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/unit/voxel_test_meshes.h"
 
@@ -165,7 +165,8 @@ TEST(VoxelOverlap, TheSameForAnyNumberOfThreads) {
     const Mesh mesh = test::makeJumble(3, 500);
     VoxelGrid one = gridAround(mesh, 50), many = one;
     {
-        const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+        const Workers single(1);
+        const JobsScope scope(single.jobs());
         voxelize(mesh, one);
     }
     voxelize(mesh, many);

@@ -8,7 +8,6 @@
 
 #include "fluid/sim/solids/probe_passes.h"
 #include "fluid/sim/world/state_check.h"
-#include "fluid/voxel/labels.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
@@ -32,15 +31,6 @@ vec3 turnBetween(const quat& a, const quat& b) {
     return size > 0 ? axis * (2.0F * std::atan2(size, q.w) / size) : vec3(0.0F);
 }
 
-template <class T>
-Status hold(Device& device, Buffer& buffer, std::span<const T> items, size_t extra = 0) {
-    Result<Buffer> made = device.allocate(items.size_bytes() + extra);
-    if (!made) return made.error();
-    buffer = std::move(*made);
-    device.write(buffer, std::as_bytes(items));
-    return ok();
-}
-
 }  // namespace
 
 std::array<uint32_t, 2 * kMostSurfaces> surfaceWords(std::span<const Surface> surfaces, const Surface& otherwise) {
@@ -52,146 +42,6 @@ std::array<uint32_t, 2 * kMostSurfaces> surfaceWords(std::span<const Surface> su
         std::memcpy(&words[2 * k], values, sizeof values);
     }
     return words;
-}
-
-Status SolidPasses::Field::upload(Device& device) {
-    // Where a mesh is not closed no side of it is known to be inside: what cannot be reached from the border counts as that.
-    if (!field->closed) outside = reachableFromBorder(field->surface);
-    if (Status s = hold<uint8_t>(device, bits, field->surface.bits); !s) return s;
-    if (Status s = hold<float>(device, distance, field->distance); !s) return s;
-    return hold<uint32_t>(device, normal, field->normal, 2 * kMostSurfaces * sizeof(uint32_t));
-}
-
-namespace {
-
-Status check(std::span<const Surface> surfaces) {
-    if (surfaces.size() > kMostSurfaces)
-        return badInput(
-            fmt::format("{} kinds of wall are more than the {} there may be: give some colliders the same friction and restitution",
-                        surfaces.size(), kMostSurfaces));
-    for (size_t k = 0; k < surfaces.size(); ++k) {
-        if (!std::isfinite(surfaces[k].friction))
-            return badInput(fmt::format("the friction of surface {} is {}, must be 0 or more, or below 0 for fluid.collision's", k,
-                                        surfaces[k].friction));
-        if (!(surfaces[k].restitution <= 1) || !std::isfinite(surfaces[k].restitution))
-            return badInput(fmt::format("the restitution of surface {} is {}, must be between 0 and 1, or below 0 for fluid.collision's", k,
-                                        surfaces[k].restitution));
-    }
-    return ok();
-}
-
-// Kernels that use the field need its parameters first: fieldParams.
-Status reaches(const VoxelField& field, float spacing) {
-    if (0.5F * spacing < field.band) return ok();
-    return badInput(
-        fmt::format("a solid's voxel field has a band of {:.3g} m, which must be wider than half a spacing of {:.3g} m: bake it with a "
-                    "band of at least "
-                    "{:.3g} m",
-                    field.band, spacing, 2 * spacing));
-}
-
-}  // namespace
-
-Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const FluidParams& params, std::span<const Define> threads) {
-    SolidPasses s;
-    s.device_ = &device;
-    s.planeSolids_ = solids.planes;
-    for (const PlaneSolid& p : s.planeSolids_) {
-        if (!isFinite(p.position) || !isFinite(p.normal)) return badInput("a plane's place or normal is not finite");
-        if (!(glm::length(p.normal) > 0.0F)) return badInput("a plane's normal is zero: give it a direction");
-        if (p.surface >= kMostSurfaces) return badInput(fmt::format("a plane's surface is {}, must be below {}", p.surface, kMostSurfaces));
-    }
-    if (Status sound = check(solids.surfaces); !sound) return sound.error();
-    s.surfaces_ = solids.surfaces;
-    Result<Buffer> planes = device.allocate(std::max<size_t>(s.planeSolids_.size(), 1) * 2 * sizeof(vec4));
-    if (!planes) return planes.error();
-    s.planes_ = std::move(*planes);
-
-    if (solids.field != nullptr && !solids.field->empty()) {
-        if (Status wide = reaches(*solids.field, params.spacing); !wide) return wide.error();
-        s.static_.field = solids.field;
-        if (Status done = s.static_.upload(device); !done) return done.error();
-        Result<Buffer> block = device.allocate(sizeof(FieldParams));
-        if (!block) return block.error();
-        s.staticBlock_ = std::move(*block);
-    }
-    for (const RigidSolid& rigid : solids.rigid) {
-        if (!isSound(rigid.pose))
-            return badInput(fmt::format("the pose of moving solid {} is not finite, farther than {} m, or its rotation has no unit length",
-                                        s.rigid_.size(), kMostDistance));
-        if (rigid.field != nullptr)
-            if (Status wide = reaches(*rigid.field, params.spacing); !wide) return wide.error();
-        Moving m;
-        m.on.field = rigid.field;
-        m.atStart = rigid.pose;
-        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
-    }
-    for (DeformingField* shape : solids.deforming) {
-        if (shape == nullptr) return badInput("a deforming solid has no field: bake its mesh first");
-        if (Status wide = reaches(shape->field(), params.spacing); !wide) return wide.error();
-        Moving m;
-        m.shape = shape;
-        m.on.field = &shape->field();
-        m.shapeAtStart.assign(shape->positions().begin(), shape->positions().end());
-        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
-    }
-    struct Wanted {
-        Kernel* kernel;
-        const char* path;
-        std::vector<Define> defines;
-        bool wanted;
-    };
-    s.walled_ = !glm::all(params.box.periodic()) || s.any();
-    s.thesis_ = params.collision.walk == "thesis";
-    const bool thesis = s.thesis_, still = s.static_.field != nullptr;
-    const auto collide = [&](const char* motion) {
-        std::vector<Define> d(threads.begin(), threads.end());
-        if (*motion != 0) d.push_back({motion, "1"});
-        if (std::string_view(motion) == "DEFORMING") d.push_back({"MOVING", "1"});
-        if (thesis) d.push_back({"THESIS", "1"});
-        return d;
-    };
-    for (const Wanted& w :
-         {Wanted{&s.nearWalls_, "fluid/solids/near_walls", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
-          Wanted{&s.followWalls_, "fluid/solids/follow_walls", {}, s.walled_},
-          Wanted{&s.friction_, "fluid/forces/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
-                 s.walled_},
-          Wanted{&s.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
-                 s.walled_},
-          Wanted{&s.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !s.rigid_.empty()},
-          Wanted{&s.frictionDeforming_, "fluid/forces/wall_friction_moving", {{"DEFORMING", "1"}}, !s.deforming_.empty()},
-          Wanted{&s.walls_, "fluid/solids/walls", {threads.begin(), threads.end()}, s.walled_},
-          Wanted{&s.nearWallsMoving_, "fluid/solids/near_walls_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
-          Wanted{&s.collide_, "fluid/solids/collide", collide(""), still},
-          Wanted{&s.collideRigid_, "fluid/solids/collide", collide("MOVING"), !s.rigid_.empty()},
-          Wanted{&s.collideDeforming_, "fluid/solids/collide", collide("DEFORMING"), !s.deforming_.empty()}}) {
-        if (!w.wanted) continue;
-        Result<Kernel> found = device.kernel(w.path, w.defines);
-        if (!found) return found.error();
-        *w.kernel = *found;
-    }
-    if (Status done = s.reset(); !done) return done.error();
-    return s;
-}
-
-Status SolidPasses::addMoving(Moving m) {
-    if (m.on.field == nullptr || m.on.field->empty()) return badInput("a moving solid has no voxels: bake its mesh first");
-    if (Status done = m.on.upload(*device_); !done) return done;
-    Result<Buffer> block = device_->allocate(sizeof(MotionParams));
-    if (!block) return block.error();
-    m.block = std::move(*block);
-    const VoxelGrid& grid = m.on.field->surface;
-    for (int k = 0; k < 8; ++k) {
-        const vec3 corner = grid.origin + grid.voxel * vec3(grid.size) * vec3(k & 1, (k >> 1) & 1, k >> 2);
-        m.radius = std::max(m.radius, glm::length(corner));
-    }
-    if (m.shape != nullptr) {
-        Result<Buffer> displacement = device_->allocate(m.on.field->distance.size() * sizeof(vec4));
-        if (!displacement) return displacement.error();
-        m.displacement = std::move(*displacement);
-    }
-    (m.shape != nullptr ? deforming_ : rigid_).push_back(std::move(m));
-    return ok();
 }
 
 namespace {
@@ -225,6 +75,32 @@ bool SolidPasses::maySpawn(const vec3& p, float spacing, float near) const {
     return static_.field == nullptr || (static_.maySpawn(p, spacing, near) && !inWall(static_.field->surface, p));
 }
 
+Status SolidPasses::check(std::span<const Surface> surfaces) {
+    if (surfaces.size() > kMostSurfaces)
+        return badInput(
+            fmt::format("{} kinds of wall are more than the {} there may be: give some colliders the same friction and restitution",
+                        surfaces.size(), kMostSurfaces));
+    for (size_t k = 0; k < surfaces.size(); ++k) {
+        if (!std::isfinite(surfaces[k].friction))
+            return badInput(fmt::format("the friction of surface {} is {}, must be 0 or more, or below 0 for fluid.collision's", k,
+                                        surfaces[k].friction));
+        if (!(surfaces[k].restitution <= 1) || !std::isfinite(surfaces[k].restitution))
+            return badInput(fmt::format("the restitution of surface {} is {}, must be between 0 and 1, or below 0 for fluid.collision's", k,
+                                        surfaces[k].restitution));
+    }
+    return ok();
+}
+
+bool SolidPasses::insideAdded(const vec3& p, float spacing) const {
+    for (const PlaneSolid& plane : planeSolids_)
+        if (glm::dot(plane.normal, p - plane.position) < 0) return true;
+    for (size_t k = 0; k < rigid_.size(); ++k)
+        if (rigid_[k].added && !rigid_[k].on.maySpawn(poses_[k].toOwn(p), spacing, 0)) return true;
+    for (const Moving& m : deforming_)
+        if (m.added && !m.on.maySpawn(p, spacing, 0)) return true;
+    return staticAdded_ && static_.field != nullptr && (!static_.maySpawn(p, spacing, 0) || inWall(static_.field->surface, p));
+}
+
 bool SolidPasses::hasSurfaces(std::span<const Surface> surfaces) const {
     return std::ranges::equal(
         surfaces, surfaces_, [](const Surface& a, const Surface& b) { return a.friction == b.friction && a.restitution == b.restitution; });
@@ -250,18 +126,21 @@ Status SolidPasses::restore(const Places& places) {
                                     places.poses.size(), places.shapes.size(), rigid_.size(), deforming_.size()));
     poses_ = places.poses;
     for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
-    for (size_t k = 0; k < deforming_.size(); ++k) {
-        Moving& m = deforming_[k];
-        m.shapeFrom = m.shapeTarget = m.shapeNow = places.shapes[k];
-        m.updates = 1;
-        // Twice: the second time nothing has moved, and the wall's velocity is nought again.
-        for (int twice = 0; twice < 2; ++twice) {
-            m.updated = 0;
-            if (Status done = deform(m, 1.0, 1.0); !done) return done;
-        }
-    }
+    for (size_t k = 0; k < deforming_.size(); ++k)
+        if (Status done = settle(deforming_[k], places.shapes[k]); !done) return done;
     fastestWall_ = 0;
     voxelsRewritten_ = places.voxelsRewritten;
+    return ok();
+}
+
+Status SolidPasses::settle(Moving& m, const std::vector<vec3>& shape) {
+    m.shapeFrom = m.shapeTarget = m.shapeNow = shape;
+    m.updates = 1;
+    // Twice: the second time nothing has moved, and the wall's velocity is nought again.
+    for (int twice = 0; twice < 2; ++twice) {
+        m.updated = 0;
+        if (Status done = deform(m, 1.0, 1.0); !done) return done;
+    }
     return ok();
 }
 
@@ -412,6 +291,19 @@ void SolidPasses::setMotion(MotionParams& m, const Pose& start, const Pose& end,
     m.origin = vec4(end.position, 0.0F);
 }
 
+void SolidPasses::writePlanes() {
+    const auto words = surfaceWords(surfaces_, otherwise_);
+    std::vector<vec4> list;
+    for (const PlaneSolid& p : planeSolids_) {
+        const vec3 n = glm::normalize(p.normal);
+        list.emplace_back(n, -glm::dot(n, p.position));
+        float values[2];
+        std::memcpy(values, &words[2 * p.surface], sizeof values);
+        list.emplace_back(values[0], values[1], 0.0F, 0.0F);
+    }
+    device_->writeAll<vec4>(planes_, list);
+}
+
 Status SolidPasses::advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to) {
     const Surface otherwise{params.collision.friction, params.collision.restitution};
     if (surfacesChanged_ || otherwise.friction != otherwise_.friction || otherwise.restitution != otherwise_.restitution) {
@@ -424,15 +316,7 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
         if (static_.field != nullptr) tell(static_);
         for (Moving& m : rigid_) tell(m.on);
         for (Moving& m : deforming_) tell(m.on);
-        std::vector<vec4> list;
-        for (const PlaneSolid& p : planeSolids_) {
-            const vec3 n = glm::normalize(p.normal);
-            list.emplace_back(n, -glm::dot(n, p.position));
-            float values[2];
-            std::memcpy(values, &words[2 * p.surface], sizeof values);
-            list.emplace_back(values[0], values[1], 0.0F, 0.0F);
-        }
-        device_->writeAll<vec4>(planes_, list);
+        writePlanes();
     }
     const FieldContact contact{.spacing = params.spacing, .restSpeed = 2.0F * gravity * step.dt, .countIndex = step.cellCount};
     if (static_.field != nullptr) {

@@ -27,10 +27,16 @@ class SolidPasses {
     static Result<SolidPasses> create(Device& device, const Solids& solids, const FluidParams& params,
                                       std::span<const Define> threads = {});
 
+    // Other solids in place of these; `poses`: of solids.rigid now, whose own poses are those at t = 0. A field that is here already is not
+    // read again, and a deforming solid that is here keeps its shape. Error: as create; nothing has changed then.
+    Status replace(const Solids& solids, std::span<const Pose> poses, const FluidParams& params, std::span<const Define> threads);
+
     // True if a particle may be spawned at `p`: on the fluid's side of every plane, outside every mesh at its current pose, and not nearer
     // than its rest distance. For an existing particle, `near` is the least distance as a share of the rest distance, because a wall pushes
     // it out; but not from the voxels of a static mesh's surface.
     bool maySpawn(const vec3& p, float spacing, float near = 1) const;
+    // True if `p` is inside a mesh that the last replace() added, or behind a plane.
+    bool insideAdded(const vec3& p, float spacing) const;
     bool any() const { return planeCount() > 0 || static_.field != nullptr || !rigid_.empty() || !deforming_.empty(); }
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
     const Buffer& planes() const { return planes_; }  // in the layout of integrate.kernel
@@ -107,6 +113,7 @@ class SolidPasses {
     struct Moving {
         Field on;
         DeformingField* shape = nullptr;  // null: rigid
+        bool added = true;                // by the last replace()
         MotionParams motion{};
         Buffer block;  // a MotionParams
         Pose atStart, from, target;
@@ -116,7 +123,11 @@ class SolidPasses {
         Buffer displacement;
     };
 
+    static Status check(std::span<const Surface> surfaces);
     Status addMoving(Moving moving);
+    void writePlanes();
+    static Moving* keep(std::vector<Moving>& all, const VoxelField* field, std::vector<const Moving*>& taken);
+    Status settle(Moving& moving, const std::vector<vec3>& shape);
     // `planes`: what is pushed may be beyond the box or a plane. `seconds`: as keepOut; nothing: the way is the last substep's.
     void collide(const StepParams& step, const Movers& movers, bool planes, std::optional<double> seconds, ProbePasses* probes);
     uint64_t voxelsHash() const;  // of what was baked and stays
@@ -134,6 +145,7 @@ class SolidPasses {
     Kernel nearWalls_, followWalls_, friction_, frictionMoving_, frictionDeforming_, adhesion_, collide_, walls_, nearWallsMoving_,
         collideRigid_, collideDeforming_;
     Field static_;
+    bool staticAdded_ = true;  // as Moving::added
     FieldParams block_{};
     Buffer staticBlock_;
     float blockDt_ = 0;  // staticBlock_ was written for this step length

@@ -6,12 +6,6 @@
 
 namespace rivulet {
 
-namespace {
-
-constexpr uint32_t kMostFound = 16384;
-
-}  // namespace
-
 Result<ExchangePasses> ExchangePasses::create(Device& device) {
     ExchangePasses e;
     e.device_ = &device;
@@ -21,8 +15,8 @@ Result<ExchangePasses> ExchangePasses::create(Device& device) {
         if (!found) return found.error();
         *kernel = *found;
     }
-    for (auto [buffer, bytes] : {std::pair(&e.counter_, sizeof(uint32_t)), std::pair(&e.found_, 2 * kMostFound * sizeof(vec4)),
-                                 std::pair(&e.slots_, kMostFound * sizeof(uint32_t))}) {
+    for (auto [buffer, bytes] : {std::pair(&e.counter_, sizeof(uint32_t)), std::pair(&e.found_, 2 * kMost * sizeof(vec4)),
+                                 std::pair(&e.slots_, kMost * sizeof(uint32_t))}) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);
@@ -38,17 +32,17 @@ std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const 
     block.step.count = particles.count;
     block.low = vec4(box.min, 0.0F);
     block.high = vec4(box.max, 0.0F);
-    block.most = kMostFound;
+    block.most = kMost;
     block.faster = faster;
     block.looser = looser;
     device_->fill(counter_, 0);
     device_->run(within_, block, {&particles.positionNext, &particles.velocityNext, &counter_, &found_, &slots_}, particles.count);
-    const uint32_t count = std::min(device_->readAll<uint32_t>(counter_, 1)[0], kMostFound);
+    const uint32_t count = std::min(device_->readAll<uint32_t>(counter_, 1)[0], static_cast<uint32_t>(kMost));
     if (count == 0) return {};
-    const std::vector<vec4> found = device_->readAll<vec4>(found_, size_t{kMostFound} + count);
+    const std::vector<vec4> found = device_->readAll<vec4>(found_, kMost + count);
     const std::vector<uint32_t> slots = device_->readAll<uint32_t>(slots_, count);
     std::vector<WorldParticle> all;
-    for (uint32_t k = 0; k < count; ++k) all.push_back({vec3(found[k]), vec3(found[size_t{kMostFound} + k]), found[k].w, slots[k]});
+    for (uint32_t k = 0; k < count; ++k) all.push_back({vec3(found[k]), vec3(found[kMost + k]), found[k].w, slots[k]});
     // The atomic has them in any order.
     std::sort(all.begin(), all.end(), [](const WorldParticle& a, const WorldParticle& b) { return a.slot < b.slot; });
     return all;
@@ -57,7 +51,7 @@ std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const 
 void ExchangePasses::take(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
                           std::span<const uint32_t> slots, bool sorted) {
     if (slots.empty()) return;
-    ASSERT(slots.size() <= kMostFound, "the slots must be those of within()");
+    ASSERT(slots.size() <= kMost, "the slots must be those of within()");
     device_->write(slots_, std::as_bytes(slots));
     ExchangeParams block{};
     block.step = step;

@@ -16,13 +16,14 @@ namespace rivulet {
 
 class ExchangePasses {
   public:
+    static constexpr size_t kMost = 16384;  // particles a call
     // Error: out of memory.
     static Result<ExchangePasses> create(Device& device);
     bool any() const { return device_ != nullptr; }
 
-    // Both wait for the device. Sorted by slot; at most 16,384 per call.
+    // Both wait for the device. Sorted by slot; at most kMost.
     std::vector<WorldParticle> within(const StepParams& step, const Particles& particles, const Bounds& box, float faster, float looser);
-    // At most as many as one call of within() returns. `sorted`: the grid matches the current order of particles.
+    // At most kMost. `sorted`: the grid matches the current order of particles.
     void take(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
               std::span<const uint32_t> slots, bool sorted);
     Bounds taken(size_t count);  // around the places of the `count` that take() has just removed, m; waits

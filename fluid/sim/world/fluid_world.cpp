@@ -173,6 +173,7 @@ Status FluidWorld::setSources(const Sources& next) {
     emitters.reserve(next.emitters.size());
     for (const Emitter& e : next.emitters) emitters.push_back(e.params);
     std::vector<SinkParams> sinks = next.sinks;
+    if (next.emitters.size() != w.sourceSetup.emitters.size() || sinks.size() != w.sourceSetup.sinks.size()) return w.replaceSources(next);
     if (Status s = w.sources.set(next); !s) return s;
     for (size_t k = 0; k < emitters.size(); ++k) w.sourceSetup.emitters[k].params = std::move(emitters[k]);
     w.sourceSetup.sinks = std::move(sinks);

@@ -85,8 +85,23 @@ class FluidWorld {
     Status setParams(const FluidParams&);
     Status setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces. Error: as create
     void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, one group per force
-    // Sets the existing emitters and sinks; shapes and meshes stay. Error (badInput): another number of them; as setParams.
+    // Sets the emitters and sinks. With as many as before, their shapes and meshes stay; with another number, or none, all emitters begin
+    // anew: particles that were due and waited for room are dropped. Emitters that are added spawn into free slots: give the world some
+    // with fluid.maxParticles or Sources::more. Where their number changes this waits for a GPU. Error (badInput): as setParams; with
+    // fluid.grid linked_list, or in a world that exchanges water, another number; an emitter with a liquid of its own, in a world that
+    // began with one liquid.
     Status setSources(const Sources& sources);
+
+    // Walls that are added, moved at once and removed while the world runs: planes, fields, moving solids and surfaces of `solids` in place
+    // of those there are; bodies stay, those of `solids` are not read. `poses`: of solids.rigid now; empty: their own, which are those at
+    // t = 0. A field that is in the world already is not read again, and a deforming solid keeps its shape; those that are no longer named
+    // may be destroyed when this returns. Nothing else of the world changes: without walls that differ, its steps are the same bit for bit.
+    // A wall that is added does not move the water aside. Particles inside it, or behind a plane, are removed if `removeInside`, and their
+    // number is added to FluidStats::drained; else they stay, and collisions push them out through its nearest side or keep them where they
+    // are. Error (badInput): with fluid.wetness.on, or in a box that is periodic along all axes and began without walls, whose kernels know
+    // none; as create; (failed): out of memory. Nothing has changed then.
+    Status mayChangeWalls() const;  // the first of these
+    Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
 
     // Exchange with other owners of water, such as skins; only if Sources::expectedDeposit is above 0. Places m, velocities m/s. deposit:
     // adds `volume` m^3 at the place. It is pending until it suffices for a particle, which is then spawned above the place. Volume is

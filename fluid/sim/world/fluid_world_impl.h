@@ -61,6 +61,11 @@ struct FluidWorld::Impl {
     SourcePasses sources;
     ExchangePasses exchange;  // for other owners of water
     uint64_t withdrawn = 0;   // particles removed by them
+    // Particles that emitters and sinks spawned and removed before setSources() replaced them.
+    struct {
+        uint64_t emitted = 0, drained = 0;
+    } before;
+    bool hasFree = false;  // free slots may be among the sorted particles
     VolumePasses volumes;
     WaterQuery query;             // created at the first query
     bool sortedForQuery = false;  // as `sorted`, for position and velocity before the first step
@@ -103,6 +108,8 @@ struct FluidWorld::Impl {
 
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
+    Status replaceSources(const Sources& next);
+    Status removeInside();   // particles inside a wall
     Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     Status checkStart() const;

@@ -95,6 +95,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     Result<SourcePasses> passes = SourcePasses::create(*device, sourceSetup, params, traits.matter, coloured);
     if (!passes) return passes.error();
     sources = std::move(*passes);
+    hasFree = sources.any();
     if (sourceSetup.expectedDeposit > 0) {
         Result<ExchangePasses> handed = ExchangePasses::create(*device);
         if (!handed) return handed.error();
@@ -327,6 +328,7 @@ void FluidWorld::Impl::writeStart() {
     if (coloured) device->writeAll<vec4>(particles.absorptionOf, absorptionOf);
     sources.reset();
     withdrawn = 0;
+    before = {};
     if (foam) foam->reset();
     if (wet) wet->reset();
     volumes.reset();

@@ -50,6 +50,8 @@ void FluidWorld::save(WorldState& state) {
     if (w.foam) w.foam->save(state);
     if (w.wet) w.wet->save(state);
     if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.withdrawn, 1));
+    if (const uint64_t before[] = {w.before.emitted, w.before.drained}; before[0] + before[1] > 0)
+        state.put<uint64_t>("world.sourcesBefore", before);
     w.volumes.save(state);
     w.bodies.save(state);
 }
@@ -114,6 +116,14 @@ Status FluidWorld::restore(WorldState& state) {
         taken = (*count)[0];
         if (taken > uint64_t{1} << 53U) return outOfRange("world.taken", 0, static_cast<double>(taken), 0, 0x1p53);
     }
+    std::array<uint64_t, 2> before{};
+    if (state.sections().contains("world.sourcesBefore")) {
+        Result<std::vector<uint64_t>> counts = state.take<uint64_t>("world.sourcesBefore", 2);
+        if (!counts) return counts.error();
+        std::copy(counts->begin(), counts->end(), before.begin());
+        for (size_t k = 0; k < 2; ++k)
+            if (before[k] > uint64_t{1} << 53U) return outOfRange("world.sourcesBefore", k, static_cast<double>(before[k]), 0, 0x1p53);
+    }
     FoamPasses::Saved foam;
     if (w.foam) {
         Result<FoamPasses::Saved> foamed = w.foam->take(state);
@@ -144,6 +154,7 @@ Status FluidWorld::restore(WorldState& state) {
     w.gatherColours();
     w.sources.restore(*sources);
     w.withdrawn = taken;
+    w.before = {before[0], before[1]};
     if (w.foam) w.foam->restore(foam);
     if (w.wet) w.wet->restore(wetness);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);

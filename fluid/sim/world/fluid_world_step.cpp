@@ -264,7 +264,7 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     }
     if (p.ellipsoids && substeps > 0) {
         ellipsoids.find(*device, step, *grid, particles);
-        if (sources.any() && !traits.linked) ellipsoids.clearFree(*device, step, *grid, particles.count);
+        if (hasFree && !traits.linked) ellipsoids.clearFree(*device, step, *grid, particles.count);
         if (sleep) sleep->keepEllipsoids(step, *grid, particles, ellipsoids.buffers(), clock.time);
     }
     if (!p.ellipsoids) ellipsoids.forget();

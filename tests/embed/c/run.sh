@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # run.sh BUILD: rivulet.h from C, against an install prefix and with pkg-config alone. Of a build with sanitizers, so are the programs: what
-# leaks or reaches beyond its memory fails.
+# leaks, reaches beyond its memory or races fails.
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 work="$(mktemp -d)"
@@ -26,6 +26,18 @@ if nm -D --undefined-only "$library" | grep -q __asan_init; then
     cc=(clang -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fsanitize-link-c++-runtime -Wl,--no-as-needed -lstdc++)
     export ASAN_OPTIONS=quarantine_size_mb=2  # what is freed and kept for the report would look like growth
 fi
+if nm -D --undefined-only "$library" | grep -q __tsan_init; then
+    # What has several threads; the others would take hours.
+    export TSAN_OPTIONS="suppressions=$here/../../checks/races.supp"
+    read -ra flags <<<"$(pkg-config --cflags --libs rivulet egl gl) -Wl,-rpath,$(dirname "$library") -lm -lpthread -lstdc++"
+    for program in jobs overlap; do
+        cc -O1 -g -fsanitize=thread -std=c11 $warnings "$here/$program.c" "${flags[@]}" -o "$work/$program"
+        status=0
+        "$work/$program" || status=$?
+        [ $status -eq 0 ] || [ $status -eq 77 ] || exit $status
+    done
+    exit 0
+fi
 # And of what it shows, nothing but rivulet.h: a host may have names of its own.
 others="$(nm -D --defined-only "$library" | awk '{ print $3 }' | grep -v '^rivulet_' || true)"
 [ -z "$others" ] || [ "${cc[0]}" = clang ] || { echo "librivulet.so shows more than rivulet.h: $others"; exit 1; }
@@ -36,9 +48,9 @@ for name in $shown; do
     grep -qx "$name" <<<"$declared" || { echo "$name is not in rivulet.h"; exit 1; }
 done
 
-for program in main faults gl many; do
+for program in main couple faults jobs walls gl many lost overlap; do
     packages=rivulet
-    [ $program = main ] || [ $program = faults ] || packages="rivulet egl gl"
+    case $program in gl|many|lost|overlap) packages="rivulet egl gl" ;; esac
     read -ra flags <<<"$(pkg-config --cflags --libs $packages)"
     "${cc[@]}" -std=c11 $warnings "$here/$program.c" "${flags[@]}" -Wl,-rpath,"$(dirname "$library")" -lm -lpthread -o "$work/$program"
 done
@@ -47,11 +59,22 @@ cxx=(c++ -O1)
 [ "${cc[0]}" = cc ] || cxx=(clang++ "${cc[@]:1}")
 "${cxx[@]}" -std=c++17 $warnings "$here/throws.cpp" "${flags[@]}" -Wl,-rpath,"$(dirname "$library")" -o "$work/throws"
 "$work/main" "$work"
+"$work/couple"
 "$work/faults"
 "$work/throws"
-for program in gl many; do
+"$work/jobs"
+"$work/walls"
+# Loaded and unloaded by dlopen. A sanitizer's own library cannot be loaded late.
+runs=(gl many lost "overlap $work")
+if [ "${cc[0]}" = cc ]; then
+    read -ra flags <<<"$(pkg-config --cflags rivulet) $(pkg-config --cflags --libs egl gl)"
+    "${cc[@]}" -std=c11 $warnings "$here/unload.c" "${flags[@]}" -ldl -lpthread -o "$work/unload"
+    runs+=("unload cpu $library" "unload cl $library" "unload gl $library")
+fi
+for program in "${runs[@]}"; do
     status=0
-    "$work/$program" || status=$?
-    if [ $status -eq 77 ] && [ -z "${RIVULET_TEST_DEVICES:-}" ]; then echo "no OpenGL: $program is left out"; status=0; fi
+    read -ra words <<<"$program"
+    "$work/${words[0]}" "${words[@]:1}" || status=$?
+    if [ $status -eq 77 ] && [ -z "${RIVULET_TEST_DEVICES:-}" ]; then echo "no OpenGL or OpenCL: $program is left out"; status=0; fi
     [ $status -eq 0 ] || exit $status
 done

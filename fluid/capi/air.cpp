@@ -1,0 +1,128 @@
+// rivulet.h: skins and the drops in the air between them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/skins.h"
+#include "fluid/capi/versioned.h"
+
+using namespace rivulet;
+using namespace rivulet::capi;
+
+namespace {
+
+constexpr double kPicolitre = 1.0e-15;  // m^3
+
+// Error (badInput): a skin is NULL, twice there, of another context, or not where it was in the last call.
+Status follow(rivulet_world& world, std::span<rivulet_skin* const> skins) {
+    for (size_t k = 0; k < skins.size(); ++k) {
+        if (skins[k] == nullptr) return badInput(fmt::format("skins[{}] is NULL", k));
+        if (skins[k]->context != world.context) return badInput(fmt::format("skins[{}] is of another context than the world", k));
+        if (std::find(skins.begin(), skins.begin() + static_cast<std::ptrdiff_t>(k), skins[k]) !=
+            skins.begin() + static_cast<std::ptrdiff_t>(k))
+            return badInput(fmt::format("skins[{}] is there twice", k));
+    }
+    // Drops in the air know their skin by its place.
+    if (skins.size() < world.skins.size() || !std::equal(world.skins.begin(), world.skins.end(), skins.begin()))
+        return badInput("skins are not those of the last call: give the same ones in the same order, and others after them");
+    world.skins.assign(skins.begin(), skins.end());
+    for (rivulet_skin* skin : skins) skin->maps->leaveOutHanging(true);
+    return ok();
+}
+
+Result<std::vector<rivulet_skin_inputs>> readInputs(const rivulet_skin_inputs* inputs, size_t count) {
+    std::vector<rivulet_skin_inputs> all(count);
+    const auto* at = reinterpret_cast<const std::byte*>(inputs);
+    for (size_t k = 0; inputs != nullptr && k < count; ++k) {
+        const Result<rivulet_skin_inputs> one =
+            readStruct(reinterpret_cast<const rivulet_skin_inputs*>(at), "rivulet_skin_inputs", fmt::format("inputs[{}]", k));
+        if (!one) return one.error();
+        all[k] = *one;
+        at += one->size;
+    }
+    return all;
+}
+
+}  // namespace
+
+rivulet_status rivulet_world_step_skins(rivulet_world* world, rivulet_skin* const* skins, const rivulet_skin_inputs* inputs, size_t count,
+                                        double seconds, rivulet_air* air, rivulet_error* why) {
+    return with(world, why, Needs::drawing, [&]() -> Status {
+        if (count == 0 || skins == nullptr) return badInput("skins is NULL or count is 0: give at least one skin");
+        rivulet_air around{};
+        if (air != nullptr) {
+            const Result<rivulet_air> given = readStruct(air, "rivulet_air", "air");
+            if (!given) return given.error();
+            around = *given;
+        }
+        const std::span<rivulet_skin* const> all(skins, count);
+        if (Status same = follow(*world, all); !same) return same;
+        const Result<std::vector<rivulet_skin_inputs>> in = readInputs(inputs, count);
+        if (!in) return in.error();
+        for (size_t k = 0; k < count; ++k)
+            if (Status sound = checkSkinStep(*all[k], (*in)[k], seconds); !sound) return sound;
+        const vec3 gravity = around.gravity != nullptr ? vectorOf(around.gravity) : world->params.fluid.gravity;
+        if (!isWithin(gravity, kMostGravity) || !isWithin(vec3(around.floor), kMostDistance))
+            return badInput(fmt::format("air.gravity or air.floor is not finite, or beyond {} m/s^2 or {} m", kMostGravity, kMostDistance));
+        if (seconds > 0) {
+            std::vector<PlacedFlow*> placed;
+            std::vector<vec3> winds;
+            for (size_t k = 0; k < count; ++k) {
+                placeSkin(*all[k], (*in)[k], world->airTime, seconds);
+                all[k]->placed->moveTo(world->airTime);
+                placed.push_back(&*all[k]->placed);
+                winds.push_back((*in)[k].wind != nullptr ? vectorOf((*in)[k].wind) : vec3(0.0F));
+            }
+            const AirDrops::Inputs to{.skins = placed,
+                                      .world = world->exchanges ? world->world.get() : nullptr,
+                                      .gravity = gravity,
+                                      .winds = winds,
+                                      .floor = double{around.floor},
+                                      .time = world->airTime};
+            if (Status fallen = world->air.step(to, seconds); !fallen) return fallen;
+            world->airTime += seconds;
+            for (size_t k = 0; k < count; ++k) {
+                placed[k]->moveTo(world->airTime);
+                if (Status stepped = stepSkin(*all[k], (*in)[k], gravity, seconds); !stepped) return stepped;
+                const dmat4& toWorld = placed[k]->toWorld();
+                for (const LeftDrop& d : all[k]->flow->takeLeft()) {
+                    AirDrop drop{dvec3(toWorld * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld) * dvec3(d.velocity), d.picolitres,
+                                 static_cast<uint32_t>(k)};
+                    if (d.hung) drop.hung = placed[k]->hung(*d.hung);
+                    world->air.add(drop);
+                }
+            }
+            world->fallingDrops = world->air.drawn();
+            world->hangingDrops.clear();
+            for (const PlacedFlow* skin : placed)
+                for (const HungDrop& d : skin->hanging()) addPendant(d, vec3(0.0F), world->hangingDrops);
+            for (const AirDrops::LetGo& d : world->air.letGo(placed)) addPendant(d.shape, vec3(0.0F), world->hangingDrops);
+        }
+        if (air == nullptr) return ok();
+        const AirDrops::Counts counts = world->air.counts();
+        around.drops = world->air.drops().size();
+        around.in_air = kPicolitre * static_cast<double>(counts.air);
+        around.lost = kPicolitre * static_cast<double>(counts.drained);
+        around.into_water = kPicolitre * static_cast<double>(counts.poured);
+        around.from_water = kPicolitre * static_cast<double>(counts.taken);
+        return writeStruct(around, air, "rivulet_air", "air");
+    });
+}
+
+rivulet_status rivulet_world_air_drops(const rivulet_world* world, float* drops, size_t capacity, size_t* count, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        if (count == nullptr) return badInput("count is NULL: it receives the number of drops");
+        const std::vector<AirDrop>& all = world->air.drops();
+        *count = all.size();
+        for (size_t k = 0; drops != nullptr && k < std::min(capacity, all.size()); ++k) {
+            put(vec3(all[k].position), drops + 4 * k);
+            drops[4 * k + 3] = static_cast<float>(radiusOf(all[k]));
+        }
+        return ok();
+    });
+}

@@ -1,0 +1,72 @@
+#include "fluid/render/fluid_snapshot.h"
+
+#include <tuple>
+#include <utility>
+
+#include "fluid/io/world_frame.h"
+#include "fluid/sim/world/fluid_world.h"
+
+namespace rivulet {
+
+Status FluidSnapshot::take(const FluidWorld& world) {
+    taken_ = false;
+    Device& device = world.device();
+    onGpu_ = device.backend() == Backend::gl;
+    viscosity_ = world.particles().viscosity;
+    const WetnessView wet = world.wetness();
+    wetSurface_ = wet.surface && !wet.surface->points.empty() ? wet.surface : nullptr;
+    if (onGpu_) {
+        if (Status copied = takeOnGpu(world); !copied) return copied;
+    } else {
+        frameOf(world, frame_);
+        wetness_.resize(wetSurface_ ? wetSurface_->points.size() : 0);
+        if (wetSurface_) device.read(*wet.values, std::as_writable_bytes(std::span(wetness_)));
+    }
+    taken_ = true;
+    return ok();
+}
+
+void FluidSnapshot::take(RecordedFrame frame, float viscosity) {
+    frame_ = std::move(frame);
+    viscosity_ = viscosity;
+    wetSurface_ = nullptr;
+    onGpu_ = false;
+    taken_ = true;
+}
+
+Status FluidSnapshot::takeOnGpu(const FluidWorld& world) {
+    const ParticleView particles = world.particles();
+    frame_.time = world.time();
+    frame_.spacing = particles.spacing;
+    frame_.box = {world.params().box.min, world.params().box.max};
+    count_ = particles.count > 0 ? particles.slots : 0;
+    foamCount_ = particles.foam != nullptr ? particles.foamSlots : 0;
+    Device& device = world.device();
+    const auto copy = [&device](Copy& to, const Buffer* from, size_t bytes) -> Status {
+        to.used = from != nullptr && bytes > 0;
+        if (!to.used) return ok();
+        if (to.memory.bytes() < bytes) {
+            Result<Buffer> made = device.allocate(bytes);
+            if (!made) return made.error();
+            to.memory = std::move(*made);
+        }
+        device.copy(*from, to.memory, bytes);
+        return ok();
+    };
+    const size_t vectors = count_ * sizeof(vec4), foam = foamCount_ * sizeof(vec4);
+    for (const auto& [to, from, bytes] : {std::tuple(&position_, particles.drawn, vectors),
+                                          {&velocity_, particles.velocity, vectors},
+                                          {&normal_, particles.normal, vectors},
+                                          {&id_, particles.id, count_ * sizeof(uint32_t)},
+                                          {&absorption_, particles.absorption, vectors},
+                                          {&ellipsoids_[0], particles.ellipsoids[0], vectors},
+                                          {&ellipsoids_[1], particles.ellipsoids[1], vectors},
+                                          {&ellipsoids_[2], particles.ellipsoids[2], vectors},
+                                          {&foam_[0], particles.foamDrawn, foam},
+                                          {&foam_[1], particles.foamVelocity, foam},
+                                          {&wet_, world.wetness().values, wetSurface_ ? wetSurface_->points.size() * sizeof(float) : 0}})
+        if (Status done = copy(*to, from, bytes); !done) return done;
+    return ok();
+}
+
+}  // namespace rivulet

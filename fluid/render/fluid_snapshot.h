@@ -1,0 +1,51 @@
+// FluidSnapshot: what a draw needs of a world, copied, so that the world can be stepped while the copy is drawn.
+//
+// Threads: take() belongs to the thread that steps the world, FluidUpload::view() to the thread that draws; each FluidSnapshot is used by
+// one of them at a time. On backends cpu and cl the two threads can run at the same time, take() calls no function of OpenGL, and two
+// snapshots that are exchanged (one is filled, the other drawn) need no copy in between. On gl take() copies on the GPU and needs the
+// OpenGL context of the world's device, and the snapshot must not outlive this device.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "fluid/io/recording.h"
+#include "fluid/sim/solids/wet_surface.h"
+
+namespace rivulet {
+
+class FluidWorld;
+
+class FluidSnapshot {
+  public:
+    // Copies the world as it is now, in place of what it held. Error (failed): out of memory; the snapshot is empty then.
+    Status take(const FluidWorld& world);
+    // Holds a recorded frame instead. viscosity: Pa s, of its liquid.
+    void take(RecordedFrame frame, float viscosity);
+    bool empty() const { return !taken_; }
+    double time() const { return frame_.time; }  // s, simulated
+
+  private:
+    friend class FluidUpload;
+    Status takeOnGpu(const FluidWorld& world);
+
+    bool taken_ = false, onGpu_ = false;
+    RecordedFrame frame_;  // of cpu and cl: all; of gl: time, spacing, box
+    float viscosity_ = 0;
+    std::shared_ptr<const WetSurface> wetSurface_;
+    std::vector<float> wetness_;  // of cpu and cl
+    // Of gl.
+    struct Copy {
+        Buffer memory;
+        bool used = false;
+        unsigned name() const { return used ? static_cast<unsigned>(memory.handle()) : 0; }
+    };
+    uint32_t count_ = 0, foamCount_ = 0;
+    Copy position_, velocity_, normal_, id_, absorption_, wet_;
+    std::array<Copy, 3> ellipsoids_;
+    std::array<Copy, 2> foam_;
+};
+
+}  // namespace rivulet

@@ -11,8 +11,6 @@ namespace rivulet {
 
 namespace {
 
-using dquat = glm::dquat;
-using dmat3 = glm::dmat3;
 
 // The smoothing kernels' shapes, as shaders/fluid/methods/shape.h has them.
 double shapeOf(bool cubic, double q) {

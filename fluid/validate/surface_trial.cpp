@@ -1,6 +1,7 @@
 #include "fluid/validate/surface_trial.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <chrono>

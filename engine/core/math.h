@@ -18,7 +18,7 @@
 
 namespace rivulet {
 
-// Packed, whatever glm's settings in the host are: with GLM_FORCE_DEFAULT_ALIGNED_GENTYPES glm::vec3 is another type, which converts to these.
+// Packed, whatever glm's settings in the host are: with GLM_FORCE_DEFAULT_ALIGNED_GENTYPES glm::vec3 is another type, and converts.
 template <int N, class T>
 using PackedVector = glm::vec<N, T, glm::packed_highp>;
 template <int N, class T>

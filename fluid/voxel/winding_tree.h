@@ -15,7 +15,6 @@
 
 namespace rivulet {
 
-
 inline constexpr double kWindingRounding = 1e-9;  // turns
 inline constexpr double kFullSphere = 4.0 * std::numbers::pi;
 

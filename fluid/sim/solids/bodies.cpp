@@ -11,7 +11,6 @@ namespace rivulet {
 
 namespace {
 
-
 // The smoothing kernels' shapes, as shaders/fluid/methods/shape.h has them.
 double shapeOf(bool cubic, double q) {
     const double a = std::max(1.0 - q, 0.0);

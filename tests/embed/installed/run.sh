@@ -99,6 +99,10 @@ read -ra flags <<<"$(pkg-config --cflags rivulet-fluid)"
 foreign="$(c++ -std=c++20 "${flags[@]}" -x c++ -M all.h | tr ' \\' '\n\n' | grep -E '/(GL|CL|KHR|EGL|oneapi|fmt|json)/|glad|immintrin|json/|xxhash|zstd' || true)"
 [ -z "$foreign" ] || { echo "the headers bring with them: $foreign"; exit 1; }
 sed -n 's/^#include <\(.*\)>.*/#include <\1>/p' $(find prefix/include/rivulet -name '*.h') | grep -v 'needs_cxx_20\|immintrin' | sort -u >others.h
+for compiler in c++ clang++; do
+    command -v $compiler >/dev/null || continue
+    for standard in 20 2b; do $compiler -std=c++$standard "${flags[@]}" -Wall -Wextra -Wpedantic -Werror -x c++ -fsyntax-only all.h; done
+done
 macros() { c++ -std=c++20 "${flags[@]}" -x c++ -dM -E "$1" | sed 's/^#define \([A-Za-z0-9_]*\).*/\1/' | sort -u; }
 left="$(comm -23 <(macros all.h) <(macros others.h) | grep -v '^RIVULET_' || true)"
 [ -z "$left" ] || { echo "the headers leave a host these macros: $left"; exit 1; }

@@ -42,7 +42,7 @@ check() {
 }
 configure FetchContent
 grep -q '^RIVULET_WERROR:BOOL=OFF' build/CMakeCache.txt || { echo "warnings are errors in a host's build"; exit 1; }
-looked="$(grep -iE '^(imgui|egl|assimp|bullet|glfw3?|CLI11|GTest|GLAD_NO)[A-Za-z_]*(_DIR|_FOUND|_LIBRARIES)[:=]' build/CMakeCache.txt || true)"
+looked="$(grep -iE '^(imgui|egl|assimp|bullet|glfw3?|CLI11|GTest)[A-Za-z_]*(_DIR|_FOUND|_LIBRARIES)[:=]' build/CMakeCache.txt || true)"
 [ -z "$looked" ] || { echo "a host's configuration looks for what only the program needs: $looked"; exit 1; }
 check
 configure add_subdirectory

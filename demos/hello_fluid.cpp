@@ -1,6 +1,5 @@
 // The smallest host in C++: a GLFW window, a scene in OpenGL 4.5 core, and water in it.
 // hello_fluid [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames and writes the last one; --dry draws no water.
-#include <rivulet_glad/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -10,12 +9,12 @@
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 
-#include "demos/hello_scene.h"
-#include "engine/gpu/host_state.h"
-#include "engine/gpu/load.h"
-#include "fluid/render/backend.h"
-#include "fluid/render/fluid_upload.h"
-#include "fluid/render/water_renderer.h"
+#include "hello_scene.h"
+#include "rivulet/engine/gpu/host_state.h"
+#include "rivulet/engine/gpu/load.h"
+#include "rivulet/fluid/render/backend.h"
+#include "rivulet/fluid/render/fluid_upload.h"
+#include "rivulet/fluid/render/water_renderer.h"
 
 using namespace rivulet;
 namespace {

@@ -1,7 +1,8 @@
 // The host's own scene: a pool of 1.2 m in a terrace, its front of glass, a mosaic and a pole in it, and a post before it.
 #pragma once
 
-#include <rivulet_glad/gl.h>
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
 
 #include <glm/glm.hpp>
 #include <utility>

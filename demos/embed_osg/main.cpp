@@ -5,8 +5,9 @@
 #include <osg/Image>
 #include <osgViewer/Viewer>
 
-#include "demos/embed_osg/terrace.h"
-#include "rivulet.h"
+#include <rivulet/rivulet.h>
+
+#include "terrace.h"
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include <SDL.h>
 #include <SDL_opengl.h>
 #include <math.h>
+#include <rivulet/rivulet.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include "rivulet.h"
 
 enum { WIDTH = 640, HEIGHT = 480 };
 static rivulet_error why;

@@ -8,10 +8,10 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <math.h>
+#include <rivulet/rivulet.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "rivulet.h"
 
 #define GLSL(...) "#version 450\n" #__VA_ARGS__
 enum { WIDTH = 640, HEIGHT = 640, SIDE = 97, VERTICES = SIDE * SIDE, INDICES = 6 * (SIDE - 1) * (SIDE - 1), MAP = 512 };

@@ -127,7 +127,10 @@ class Flattener {
         const size_t close = quoted.empty() || quoted.front() != '"' ? std::string_view::npos : quoted.find('"', 1);
         if (close == std::string_view::npos)
             return badInput(fmt::format("{}:{}: cannot read this #include; write #include \"shaders/FOLDER/FILE\"", from, number));
-        const std::string path(quoted.substr(1, close - 1));
+        std::string_view named = quoted.substr(1, close - 1);
+        // As a host's C++ compiler finds our headers, so that its kernel is one text for all compilers.
+        if (named.starts_with("rivulet/shaders/")) named.remove_prefix(std::string_view("rivulet/").size());
+        const std::string path(named);
         if (std::find(stack_.begin(), stack_.end(), path) != stack_.end())
             return badInput(fmt::format("{}:{}: \"{}\" includes itself ({} -> {}); remove one of these includes", from, number, path,
                                         fmt::join(stack_, " -> "), path));

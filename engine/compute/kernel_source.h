@@ -22,7 +22,8 @@ struct KernelSource {
     std::vector<std::string> files;  // GLSL's #line has a file number: an index into this list
 };
 
-// Finds shader files by path from the project's root ("shaders/common/lang.h").
+// Finds shader files by path from the project's root ("shaders/common/lang.h"). An #include may also name ours as a host's C++ compiler
+// finds them: "rivulet/shaders/common/lang.h".
 class ShaderFiles {
   public:
     // `root`: a folder that is searched before the embedded copies; "": the embedded copies only.

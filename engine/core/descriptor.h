@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 class Descriptor {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <memory>
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 // Results are the same bit for bit for any jobs and any number of workers, but for foam, whose slots depend on the order of threads.

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 // Asks the system for large pages in this memory, from the next first touch on. A request, never an obligation: where the system has none,

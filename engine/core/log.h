@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 enum class LogLevel { info, notice, warning, error };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -11,25 +12,43 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <type_traits>
+
+#include "engine/core/abi.h"
 
 namespace rivulet {
 
-using glm::bvec3;
-using glm::dmat3;
-using glm::dmat4;
-using glm::dvec2;
-using glm::dvec3;
-using glm::ivec2;
-using glm::ivec3;
-using glm::mat3;
-using glm::mat4;
-using glm::quat;
-using glm::uvec2;
-using glm::uvec3;
-using glm::uvec4;
-using glm::vec2;
-using glm::vec3;
-using glm::vec4;
+// Packed, whatever glm's settings in the host are: with GLM_FORCE_DEFAULT_ALIGNED_GENTYPES glm::vec3 is another type, and converts.
+template <int N, class T>
+using PackedVector = glm::vec<N, T, glm::packed_highp>;
+template <int N, class T>
+using PackedMatrix = glm::mat<N, N, T, glm::packed_highp>;
+
+using vec2 = PackedVector<2, float>;
+using vec3 = PackedVector<3, float>;
+using vec4 = PackedVector<4, float>;
+using dvec2 = PackedVector<2, double>;
+using dvec3 = PackedVector<3, double>;
+using dvec4 = PackedVector<4, double>;
+using ivec2 = PackedVector<2, int>;
+using ivec3 = PackedVector<3, int>;
+using uvec2 = PackedVector<2, unsigned>;
+using uvec3 = PackedVector<3, unsigned>;
+using uvec4 = PackedVector<4, unsigned>;
+using bvec3 = PackedVector<3, bool>;
+using mat3 = PackedMatrix<3, float>;
+using mat4 = PackedMatrix<4, float>;
+using dmat3 = PackedMatrix<3, double>;
+using dmat4 = PackedMatrix<4, double>;
+using quat = glm::qua<float, glm::packed_highp>;
+using dquat = glm::qua<double, glm::packed_highp>;
+
+static_assert(sizeof(vec3) == 12 && alignof(vec4) == 4 && std::is_trivially_copyable_v<vec3> && std::is_trivially_copyable_v<mat4>,
+              "Rivulet was built with vectors of glm that are packed and trivially copied: in files that include Rivulet, do without the "
+              "GLM_FORCE_ macros that change this");
+static_assert(offsetof(quat, x) == 0 && offsetof(quat, w) == 12,
+              "Rivulet was built with quaternions in the order x, y, z, w: in files that include Rivulet, do without "
+              "GLM_FORCE_QUAT_DATA_WXYZ");
 
 inline constexpr float kPi = 3.14159265358979323846F;
 inline constexpr double kPiD = 3.14159265358979323846;

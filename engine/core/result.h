@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 // As in core/assert.h, which is not included: hosts include this header and must not see the macro ASSERT.

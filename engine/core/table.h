@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 // The name among `names` with the smallest edit distance to `typed`, ignoring case; "" if the distance exceeds a third of the length.

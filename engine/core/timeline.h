@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 double hostSeconds();  // s, the host's steady clock; all spans use it

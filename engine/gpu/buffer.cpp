@@ -1,6 +1,7 @@
 #include "engine/gpu/buffer.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <utility>
@@ -75,5 +76,7 @@ void Buffer::fill(uint32_t word) {
     cleared_ = true;
     glClearNamedBufferData(name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
+
+void Buffer::bind(GLenum target, GLuint binding) const { glBindBufferBase(target, binding, name()); }
 
 }  // namespace rivulet::gpu

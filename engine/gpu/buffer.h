@@ -29,8 +29,8 @@ class Buffer {
         return fromBytes(std::as_bytes(std::span(items)));
     }
 
-    GLuint name() const { return name_.name(); }
-    GLuint release() { return name_.release(); }  // the caller owns the name now; the Buffer is empty
+    unsigned name() const { return name_.name(); }
+    unsigned release() { return name_.release(); }  // the caller owns the name now; the Buffer is empty
     size_t bytes() const { return bytes_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
 
@@ -53,7 +53,7 @@ class Buffer {
     std::span<std::byte> mapped() const { return {mapped_, mapped_ ? bytes_ : 0}; }  // empty unless BufferKind::mapped
 
     // `target`: GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER.
-    void bind(GLenum target, GLuint binding) const { glBindBufferBase(target, binding, name()); }
+    void bind(unsigned target, unsigned binding) const;
 
   private:
     void endClear();

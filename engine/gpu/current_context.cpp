@@ -5,6 +5,7 @@
 #else
 #include <dlfcn.h>
 #endif
+#include <rivulet_glad/gl.h>
 
 #include "engine/gpu/buffer.h"
 

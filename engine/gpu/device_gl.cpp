@@ -1,6 +1,7 @@
 #include "engine/gpu/device_gl.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <cstdlib>

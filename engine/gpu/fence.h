@@ -1,11 +1,10 @@
 // Fence: reports whether the GPU has finished all commands issued before it.
 #pragma once
 
-#include <rivulet_glad/gl.h>
-
+#include <cstdint>
 #include <utility>
 
-#include "engine/gpu/lost_context.h"
+#include "engine/core/abi.h"
 
 namespace rivulet::gpu {
 
@@ -17,29 +16,15 @@ class Fence {
         std::swap(sync_, other.sync_);
         return *this;
     }
-    ~Fence() {
-        if (sync_ && !LostContext::here()) glDeleteSync(sync_);
-    }
-    // A fence behind all commands issued so far.
-    static Fence now() {
-        Fence fence;
-        fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-        if (!fence.sync_) glFinish();  // no fence could be made: after glFinish() all commands have passed
-        return fence;
-    }
+    ~Fence();
+    static Fence now();  // behind all commands issued so far
     bool passed() const { return reached(0); }
-    void wait() const {
-        while (!reached(1'000'000'000)) {
-        }
-    }
+    void wait() const;
 
   private:
-    // A lost context returns GL_WAIT_FAILED, which counts as reached: there is nothing to wait for.
-    bool reached(GLuint64 nanoseconds) const {
-        return !sync_ || glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, nanoseconds) != GL_TIMEOUT_EXPIRED;
-    }
+    bool reached(uint64_t nanoseconds) const;
 
-    GLsync sync_ = nullptr;
+    void* sync_ = nullptr;  // a GLsync
 };
 
 }  // namespace rivulet::gpu

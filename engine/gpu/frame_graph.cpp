@@ -1,6 +1,7 @@
 #include "engine/gpu/frame_graph.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <array>

@@ -94,7 +94,7 @@ class FrameGraph;
 class PassContext {
   public:
     const Texture& texture(TextureHandle handle) const;
-    GLuint buffer(BufferHandle handle) const;  // the GL name
+    unsigned buffer(BufferHandle handle) const;  // the GL name
     size_t bytes(BufferHandle handle) const;
 
     // Binds a framebuffer of these textures (level 0, all layers) and sets the viewport to its size. It is deleted after the pass.
@@ -123,7 +123,7 @@ class FrameGraph {
     // A resource of the caller, which must exist until execute() returns; its contents are defined from the start. A pass that only writes
     // to an import is culled unless the import is an output().
     TextureHandle importTexture(std::string_view name, const Texture& texture);
-    BufferHandle importBuffer(std::string_view name, GLuint buffer, size_t bytes);
+    BufferHandle importBuffer(std::string_view name, unsigned buffer, size_t bytes);
     const TextureDesc& desc(TextureHandle handle) const;
 
     // Reading a resource that no earlier pass has written is a programming error (ASSERT with pass and resource), and so is sampling a
@@ -139,12 +139,12 @@ class FrameGraph {
     Status execute();
     // The texture or buffer of an output(), after execute().
     const Texture& result(TextureHandle handle) const;
-    GLuint result(BufferHandle handle) const;
+    unsigned result(BufferHandle handle) const;
 
     struct Ran {
         std::string name;
         bool culled;
-        GLbitfield barriers;  // of glMemoryBarrier before the pass; 0: none
+        unsigned barriers;  // of glMemoryBarrier before the pass; 0: none
     };
     std::vector<Ran> ran() const;            // the passes after execute(), for --explain and tests
     FrameGraphDescription describe() const;  // the same with all resources, for the frame graph panel

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/abi.h"
+
 namespace rivulet::gpu {
 
 enum class Usage;

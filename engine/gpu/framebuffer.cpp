@@ -1,6 +1,7 @@
 #include "engine/gpu/framebuffer.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <array>

@@ -24,7 +24,7 @@ class Framebuffer {
     Framebuffer(std::span<const Attachment> colours, const Attachment& depth);
     Framebuffer(const Texture& colour, const Texture* depth);
 
-    GLuint name() const { return name_.name(); }
+    unsigned name() const { return name_.name(); }
     int width() const { return width_; }
     int height() const { return height_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
@@ -33,7 +33,7 @@ class Framebuffer {
     void clearColour(const vec4& value, int index = 0) const;
     void clearDepth(float value = 1) const;
     // Copies colour 0 to another framebuffer (0: the window), scaled to width x height with linear filtering.
-    void blitTo(GLuint framebuffer, int width, int height) const;
+    void blitTo(unsigned framebuffer, int width, int height) const;
 
   private:
     FramebufferName name_;

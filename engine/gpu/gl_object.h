@@ -1,23 +1,23 @@
 // GlObject: a move-only owner of a GL object name; Buffer, Texture, ... use it.
 //
 // Everything in engine/gpu needs a current OpenGL 4.5 context when it is created, used and destroyed; contexts that share objects count as
-// the same one. Once the context has ended it is destroyed within a LostContext.
+// the same one. The headers do not include OpenGL: a host may use any loader. GL names and enumerants are `unsigned`.
+// Once the context has ended they are destroyed within a LostContext.
 #pragma once
-
-#include <rivulet_glad/gl.h>
 
 #include <utility>
 
+#include "engine/core/abi.h"
 #include "engine/gpu/lost_context.h"
 
 namespace rivulet::gpu {
 
 // kDelete(name) deletes the GL object.
-template <void (*kDelete)(GLuint)>
+template <void (*kDelete)(unsigned)>
 class GlObject {
   public:
     GlObject() = default;
-    explicit GlObject(GLuint name) : name_(name) {}
+    explicit GlObject(unsigned name) : name_(name) {}
     GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
     GlObject& operator=(GlObject&& other) noexcept {
         GlObject moved(std::move(other));
@@ -29,22 +29,22 @@ class GlObject {
     ~GlObject() {
         if (name_ != 0 && !LostContext::here()) kDelete(name_);
     }
-    GLuint name() const { return name_; }
-    GLuint release() { return std::exchange(name_, 0); }  // the caller owns the object now
+    unsigned name() const { return name_; }
+    unsigned release() { return std::exchange(name_, 0); }  // the caller owns the object now
     explicit operator bool() const { return name_ != 0; }
 
   private:
-    GLuint name_ = 0;
+    unsigned name_ = 0;
 };
 
-inline void deleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
-inline void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
-inline void deleteSampler(GLuint name) { glDeleteSamplers(1, &name); }
-inline void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-inline void deleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
-inline void deleteQuery(GLuint name) { glDeleteQueries(1, &name); }
-inline void deleteShader(GLuint name) { glDeleteShader(name); }
-inline void deleteProgram(GLuint name) { glDeleteProgram(name); }
+void deleteBuffer(unsigned name);
+void deleteTexture(unsigned name);
+void deleteSampler(unsigned name);
+void deleteFramebuffer(unsigned name);
+void deleteVertexArray(unsigned name);
+void deleteQuery(unsigned name);
+void deleteShader(unsigned name);
+void deleteProgram(unsigned name);
 
 using BufferName = GlObject<deleteBuffer>;
 using TextureName = GlObject<deleteTexture>;

@@ -1,5 +1,7 @@
 #include "engine/gpu/host_state.h"
 
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>

@@ -13,6 +13,8 @@
 
 #include <memory>
 
+#include "engine/core/abi.h"
+
 namespace rivulet::gpu {
 
 class HostState {

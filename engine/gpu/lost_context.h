@@ -1,6 +1,8 @@
 // The owners of OpenGL objects after the end of the OpenGL context that the objects belong to.
 #pragma once
 
+#include "engine/core/abi.h"
+
 namespace rivulet::gpu {
 
 // While it lives, owners of OpenGL objects that this thread destroys (Buffer, Texture, Program, Fence, a Device gl, renderers) call no

@@ -1,6 +1,7 @@
 #include "engine/gpu/program.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <cctype>
 #include <optional>
@@ -202,6 +203,8 @@ GLint Program::location(std::string_view uniform) {
     locations_.emplace(text, found);
     return found;
 }
+
+void Program::use() const { glUseProgram(name()); }
 
 void Program::set(std::string_view u, float v) { glProgramUniform1f(name(), location(u), v); }
 void Program::set(std::string_view u, int v) { glProgramUniform1i(name(), location(u), v); }

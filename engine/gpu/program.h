@@ -32,13 +32,13 @@ class Program {
     Status reload();
     // The same for several programs: on failure none changes. Only programs whose text has changed are compiled; their number is returned.
     // `fits` is called for each compiled programs[k] with its new GL name; its Error is a failure too.
-    using Fits = std::function<Status(size_t k, GLuint name)>;
+    using Fits = std::function<Status(size_t k, unsigned name)>;
     static Result<size_t> reload(std::span<Program* const> programs, const Fits& fits = {});
 
-    GLuint name() const { return name_.name(); }
+    unsigned name() const { return name_.name(); }
     const std::vector<std::string>& paths() const { return paths_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
-    void use() const { glUseProgram(name()); }
+    void use() const;
 
     // use() is not needed. A uniform that the compiler optimised away is ignored; one that no shader declares is a programming error
     // (ASSERT).
@@ -69,16 +69,16 @@ class Program {
                                                   const std::vector<Define>& defines);
     static Result<Built> build(const std::vector<KernelSource>& sources, const std::vector<std::string>& paths);
     void replaceBy(Built built);
-    GLint location(std::string_view uniform);
+    int location(std::string_view uniform);
 
     ShaderFiles files_;
     std::vector<std::string> paths_;
     std::vector<Define> defines_;
     ProgramName name_;
-    size_t text_ = 0;                                      // a hash of the compiled text, to detect changed files
-    std::string declarations_;                             // all uniform declarations, to distinguish "optimised away" from "unknown"
-    std::map<std::string, GLint, std::less<>> locations_;  // -1: optimised away
-    uvec3 localSize_{0};                                   // of a compute program
+    size_t text_ = 0;                                    // a hash of the compiled text, to detect changed files
+    std::string declarations_;                           // all uniform declarations, to distinguish "optimised away" from "unknown"
+    std::map<std::string, int, std::less<>> locations_;  // -1: optimised away
+    uvec3 localSize_{0};                                 // of a compute program
 };
 
 }  // namespace rivulet::gpu

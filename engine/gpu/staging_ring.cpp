@@ -1,5 +1,7 @@
 #include "engine/gpu/staging_ring.h"
 
+#include <rivulet_glad/gl.h>
+
 #include "engine/core/assert.h"
 
 namespace rivulet::gpu {

@@ -1,6 +1,7 @@
 #include "engine/gpu/texture.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <cstring>
@@ -209,6 +210,10 @@ void Texture::setSampling(const Sampling& sampling) {
         [](GLuint t, GLenum key, const GLfloat* v) { glTextureParameterfv(t, key, v); });
 }
 
+void Texture::generateMips() { glGenerateTextureMipmap(name()); }
+
+void Texture::bind(GLuint unit) const { glBindTextureUnit(unit, name()); }
+
 void Texture::bindImage(GLuint unit, GLenum access, int mip) const {
     const GLboolean layered = desc_.shape == TextureShape::flat ? GL_FALSE : GL_TRUE;
     glBindImageTexture(unit, name(), mip, layered, 0, access, formatInfo(desc_.format).internal);
@@ -222,5 +227,7 @@ Sampler::Sampler(const Sampling& sampling, bool mips) {
         name, sampling, mips, [](GLuint s, GLenum key, GLint v) { glSamplerParameteri(s, key, v); },
         [](GLuint s, GLenum key, const GLfloat* v) { glSamplerParameterfv(s, key, v); });
 }
+
+void Sampler::bind(GLuint unit) const { glBindSampler(unit, name()); }
 
 }  // namespace rivulet::gpu

@@ -28,11 +28,11 @@ enum class Format {
     depth32f
 };
 struct FormatInfo {
-    const char* name;     // "rgba16f"
-    GLenum internal;      // GL_RGBA16F: also glBindImageTexture's format
-    GLenum layout, type;  // of upload() and read(): GL_RGBA, GL_FLOAT. 16f formats are read and written as 32-bit floats
-    int bytes;            // a texel on the GPU
-    int hostBytes;        // a texel in upload() and read()
+    const char* name;       // "rgba16f"
+    unsigned internal;      // GL_RGBA16F: also glBindImageTexture's format
+    unsigned layout, type;  // of upload() and read(): GL_RGBA, GL_FLOAT. 16f formats are read and written as 32-bit floats
+    int bytes;              // a texel on the GPU
+    int hostBytes;          // a texel in upload() and read()
     bool depth, integer;
 };
 const FormatInfo& formatInfo(Format format);
@@ -71,7 +71,7 @@ class Texture {
     // Error (failed): larger than the driver allows, or out of memory, with the requested size.
     static Result<Texture> create(const TextureDesc& desc);
 
-    GLuint name() const { return name_.name(); }
+    unsigned name() const { return name_.name(); }
     const TextureDesc& desc() const { return desc_; }  // settled
     int width(int mip = 0) const;
     int height(int mip = 0) const;
@@ -81,13 +81,13 @@ class Texture {
     void upload(std::span<const std::byte> texels, int mip = 0, int layer = 0);
     void read(std::span<std::byte> texels, int mip = 0, int layer = 0) const;  // waits for the GPU
     size_t hostBytes(int mip = 0) const;                                       // bytes of one level of one layer
-    void generateMips() { glGenerateTextureMipmap(name()); }
+    void generateMips();
     void clear(const vec4& value);  // every level and layer; depth takes x; not for integer formats
     void setSampling(const Sampling& sampling);
 
-    void bind(GLuint unit) const { glBindTextureUnit(unit, name()); }
+    void bind(unsigned unit) const;
     // `access`: GL_READ_ONLY, GL_WRITE_ONLY, GL_READ_WRITE. All layers.
-    void bindImage(GLuint unit, GLenum access, int mip = 0) const;
+    void bindImage(unsigned unit, unsigned access, int mip = 0) const;
 
   private:
     TextureName name_;
@@ -99,8 +99,8 @@ class Sampler {
   public:
     Sampler() = default;
     explicit Sampler(const Sampling& sampling, bool mips = true);  // mips: sample levels other than 0
-    GLuint name() const { return name_.name(); }
-    void bind(GLuint unit) const { glBindSampler(unit, name()); }
+    unsigned name() const { return name_.name(); }
+    void bind(unsigned unit) const;
 
   private:
     SamplerName name_;

@@ -1,5 +1,7 @@
 #include "engine/gpu/timer.h"
 
+#include <rivulet_glad/gl.h>
+
 #include <utility>
 
 #include "engine/core/assert.h"

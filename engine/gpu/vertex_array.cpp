@@ -1,5 +1,7 @@
 #include "engine/gpu/vertex_array.h"
 
+#include <rivulet_glad/gl.h>
+
 namespace rivulet::gpu {
 namespace {
 
@@ -30,5 +32,9 @@ void VertexArray::integerAttribute(GLuint location, GLuint buffer, int component
     glVertexArrayAttribIFormat(name(), location, components, type, 0);
     feed(name(), location, buffer, stride, offset, divisor);
 }
+
+void VertexArray::elements(GLuint buffer) { glVertexArrayElementBuffer(name(), buffer); }
+
+void VertexArray::bind() const { glBindVertexArray(name()); }
 
 }  // namespace rivulet::gpu

@@ -14,14 +14,15 @@ class VertexArray {
 
     // Attribute `location` = `components` numbers of `type` (GL_FLOAT; integers are converted to float) every `stride` bytes.
     // divisor 1: one value per instance instead of per vertex.
-    void attribute(GLuint location, GLuint buffer, int components, GLenum type, int stride, size_t offset = 0, int divisor = 0);
+    void attribute(unsigned location, unsigned buffer, int components, unsigned type, int stride, size_t offset = 0, int divisor = 0);
     // The same for `in uint`, `in ivec2` ...: integers stay integers.
-    void integerAttribute(GLuint location, GLuint buffer, int components, GLenum type, int stride, size_t offset = 0, int divisor = 0);
-    void elements(GLuint buffer) { glVertexArrayElementBuffer(name(), buffer); }
+    void integerAttribute(unsigned location, unsigned buffer, int components, unsigned type, int stride, size_t offset = 0,
+                          int divisor = 0);
+    void elements(unsigned buffer);
 
-    GLuint name() const { return name_.name(); }
+    unsigned name() const { return name_.name(); }
     explicit operator bool() const { return static_cast<bool>(name_); }
-    void bind() const { glBindVertexArray(name()); }
+    void bind() const;
     void release() { name_.release(); }  // drops the name without deleting it: another context owns it and deletes it
 
   private:

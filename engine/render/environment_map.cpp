@@ -67,15 +67,15 @@ Picture blurred(const Picture& from) {
 }  // namespace
 
 std::array<vec4, 9> matteLight(const HdrImage& from) {
-    std::array<glm::dvec3, 9> sum{};
+    std::array<dvec3, 9> sum{};
     for (int y = 0; y < from.height; ++y) {
         const double up = (y + 0.5) / from.height * double{kPi} - 0.5 * double{kPi};
         const double area = 2 * double{kPi} / from.width * (double{kPi} / from.height) * std::cos(up);
         for (int x = 0; x < from.width; ++x) {
             const double turn = ((x + 0.5) / from.width - 0.5) * 2 * double{kPi};
-            const glm::dvec3 d(std::cos(up) * std::sin(turn), std::sin(up), -std::cos(up) * std::cos(turn));
-            const glm::dvec3 light =
-                glm::dvec3(from.texels[static_cast<size_t>(y) * static_cast<size_t>(from.width) + static_cast<size_t>(x)]) * area;
+            const dvec3 d(std::cos(up) * std::sin(turn), std::sin(up), -std::cos(up) * std::cos(turn));
+            const dvec3 light =
+                dvec3(from.texels[static_cast<size_t>(y) * static_cast<size_t>(from.width) + static_cast<size_t>(x)]) * area;
             const double basis[9] = {1, d.y, d.z, d.x, d.x * d.y, d.y * d.z, 3 * d.z * d.z - 1, d.x * d.z, d.x * d.x - d.y * d.y};
             for (size_t k = 0; k < 9; ++k) sum[k] += light * basis[k];
         }

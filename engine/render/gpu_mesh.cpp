@@ -1,5 +1,7 @@
 #include "engine/render/gpu_mesh.h"
 
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 
 namespace rivulet {

@@ -1,5 +1,7 @@
 #include "engine/render/lens.h"
 
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 #include <vector>
 

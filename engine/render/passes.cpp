@@ -1,5 +1,6 @@
 #include "engine/render/passes.h"
 
+#include <rivulet_glad/gl.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>

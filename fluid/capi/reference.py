@@ -1,23 +1,50 @@
 #!/usr/bin/env python3
-"""reference.py ROOT: writes docs/api.md from the headers that a host includes: the comment that each begins with, and its declarations. With
---check: exit 1 if the page differs from the headers."""
+"""reference.py ROOT: writes docs/api.md from the headers that a host includes (public_headers.txt): a list of them, then the comment that each
+begins with, and its declarations. With --check: exit 1 if the page differs from the headers."""
 import pathlib
 import re
 import sys
 
-HEADERS = [
-    "engine/core/result.h", "engine/core/log.h", "engine/core/jobs.h", "engine/compute/device.h", "engine/compute/device_cpu.h", "engine/gpu/lost_context.h", "engine/gpu/load.h", "engine/gpu/host_state.h",
-    "engine/render/frame_view.h", "engine/core/mesh_view.h", "fluid/voxel/voxel_field.h", "fluid/voxel/field_bake.h", "fluid/sim/solids/solids.h", "fluid/sim/solids/bodies.h",
-    "fluid/sim/solids/probes.h",
-    "fluid/sim/world/fluid_params.h", "fluid/sim/forces/force_*.h", "fluid/sim/methods/method_pbf.h",
-    "fluid/sim/methods/method_dfsph.h", "fluid/sim/sources/block.h", "fluid/sim/sources/emitter.h", "fluid/sim/forces/force.h", "fluid/sim/world/stats.h", "fluid/sim/world/particle_view.h", "fluid/sim/world/fluid_world.h",
-    "fluid/sim/query/water_query.h", "fluid/sim/solids/buoyancy.h", "fluid/sim/query/volumes.h", "fluid/sim/world/world_state.h", "fluid/render/backend.h",
-    "fluid/render/fluid_view.h", "fluid/render/fluid_snapshot.h", "fluid/render/fluid_upload.h", "fluid/render/look_params.h", "fluid/render/host_target.h",
-    "fluid/render/water_renderer.h", "fluid/render/renderers.h", "fluid/flow/flow_mesh.h", "fluid/flow/surface_flow.h",
-    "fluid/flow/flow_maps.h", "fluid/flow/flow_layer.h", "fluid/flow/placed_flow.h", "fluid/flow/air_drops.h", "fluid/io/export.h", "fluid/io/marching_cubes.h", "fluid/io/recording.h",
-    "fluid/capi/rivulet.h", "fluid/capi/rivulet_context.h", "fluid/capi/rivulet_world.h", "fluid/capi/rivulet_query.h",
-    "fluid/capi/rivulet_draw.h", "fluid/capi/rivulet_skin.h", "fluid/capi/rivulet_snapshot.h",
-]
+
+def listed(root):
+    """[(heading, [paths])] of public_headers.txt; a pattern gives the files that it matches."""
+    groups = []
+    for line in (root / "fluid/capi/public_headers.txt").read_text().split("\n\n", 1)[1].splitlines():
+        if line.startswith("# "):
+            groups.append((line[2:], []))
+        elif line:
+            found = sorted(str(p.relative_to(root)) for p in root.glob(line))
+            if not found:
+                sys.exit(f"{line} does not exist: correct the list in fluid/capi/public_headers.txt")
+            groups[-1][1].extend(found)
+    return groups
+
+
+def public(name):
+    """How a host includes it."""
+    return "rivulet/" + name.removeprefix("fluid/capi/")
+
+
+def comment(source, name):
+    """The comment that a header begins with, and the rest."""
+    if name.startswith("fluid/capi/"):
+        head, body = source.split("*/", 1)
+        return "\n".join(re.sub(r"^ ?\*? ?", "", line) for line in head.replace("/*", "", 1).splitlines()).strip(), body
+    lines = source.splitlines()
+    n = next(k for k, line in enumerate(lines) if not line.startswith("//"))
+    return "\n".join(re.sub(r"^// ?", "", line) for line in lines[:n]), "\n".join(lines[n:])
+
+
+def index(root):
+    text = ("\n## Headers\n\nA host includes headers as below, and no others; what these include is installed with them. Of the kernel language and "
+            "the shaders, each file is its own reference.\n")
+    for heading, names in listed(root):
+        text += f"\n{heading}:\n\n"
+        for name in names:
+            said = " ".join(re.split(r"\n\s*\n", comment((root / name).read_text(), name)[0])[0].split()).removeprefix("rivulet.h: ")
+            sentence = re.split(r"(?<=[A-Za-z0-9)])(?<!et al)[.](?: |$)", said)[0]
+            text += f"- `{public(name)}`: {sentence}\n"
+    return text
 
 
 def without_private(text):
@@ -38,28 +65,20 @@ def without_private(text):
 
 def page(root):
     text = "# The API\n\nWritten by `fluid/capi/reference.py` from the headers that a host includes; how to use them is in [embedding.md](embedding.md).\n"
-    for name in (name for pattern in HEADERS for name in (sorted(str(p.relative_to(root)) for p in root.glob(pattern)) or [pattern])):
-        path = root / name
-        if not path.exists():
-            sys.exit(f"{name} does not exist: correct the list in fluid/capi/reference.py")
-        source = path.read_text()
+    text += index(root)
+    for name in (name for _, names in listed(root) for name in names if not name.startswith("shaders/")):
+        said, body = comment((root / name).read_text(), name)
         if name.startswith("fluid/capi/"):
-            head, body = source.split("*/", 1)
-            said = "\n".join(re.sub(r"^ ?\*? ?", "", line) for line in head.replace("/*", "", 1).splitlines()).strip()
             # rivulet.h itself includes the others and declares nothing.
             body = body.split('extern "C" {\n#endif', 1)[1].split("#ifdef __cplusplus", 1)[0] if 'extern "C"' in body else ""
         else:
-            lines = source.splitlines()
-            n = next(k for k, line in enumerate(lines) if not line.startswith("//"))
-            said = "\n".join(re.sub(r"^// ?", "", line) for line in lines[:n])
-            body = "\n".join(lines[n:])
             body = re.sub(r"^#.*\n", "", body, flags=re.M)
             body = re.sub(r"^namespace [\w:]+ \{\n|^\}  // namespace [\w:]+\n?", "", body, flags=re.M)
             body = without_private(body)
         said = re.sub(r"((?:^ {4}.*\n?)+)", lambda m: "\n" + m.group(1) + "\n", said, flags=re.M)
         body = re.sub(r"\n{3,}", "\n\n", body).strip()
         language = "c" if name.startswith("fluid/capi/") else "cpp"
-        text += f"\n## {name}\n\n{said.strip()}\n" + (f"\n```{language}\n{body}\n```\n" if body else "")
+        text += f"\n## {public(name)}\n\n{said.strip()}\n" + (f"\n```{language}\n{body}\n```\n" if body else "")
     return text
 
 

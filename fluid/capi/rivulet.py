@@ -16,6 +16,7 @@ the linker searches.
 """
 import ctypes
 import ctypes.util
+import glob
 import json
 import os
 from collections import namedtuple
@@ -138,6 +139,7 @@ def _load():
     here = os.path.dirname(os.path.abspath(__file__))
     places = [os.environ.get("RIVULET_LIBRARY")]
     places += [os.path.join(here, *up, "librivulet.so") for up in ((), ("..", "lib"), ("..", "..", "..", "lib"), ("..", "..", "..", "lib64"))]
+    places += sorted(glob.glob(os.path.join(here, "..", "..", "..", "lib", "*", "librivulet.so")))  # lib/x86_64-linux-gnu
     for place in filter(None, places):
         if os.path.exists(place):
             return ctypes.CDLL(place)

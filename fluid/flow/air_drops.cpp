@@ -34,7 +34,7 @@ HungDrop necking(const AirDrop& d, double share) {
     const double pear = std::min(kPear * radius / made.profile.length, 0.75), neck = 1 - pear, p4 = std::pow(pear, 4);
     const double a = kFoot * d.hung->profile.swell.x / (neck * neck);
     const double b = (4 * std::pow(radius, 3) / (3 * made.profile.length) - a * p4 / 12) / (neck * p4 / 12 + pear * p4 / 20);
-    const glm::dvec4 broken(neck * neck * a, neck * neck * b - 2 * neck * a, a - 2 * neck * b, b);
+    const dvec4 broken(neck * neck * a, neck * neck * b - 2 * neck * a, a - 2 * neck * b, b);
     made.profile.swell = glm::mix(d.hung->profile.swell, broken, share);
     return made;
 }
@@ -49,7 +49,7 @@ HungDrop swinging(const AirDrop& d, double time) {
     made.axis = made.down();
     made.lean = dvec3(0.0);
     made.foot = d.position - made.axis * (0.5 * length);
-    made.profile = {length, glm::dvec4(0, 6 * volume * (1 - pear), 12 * volume * pear, 0)};
+    made.profile = {length, dvec4(0, 6 * volume * (1 - pear), 12 * volume * pear, 0)};
     return made;
 }
 

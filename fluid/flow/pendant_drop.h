@@ -11,7 +11,7 @@ namespace rivulet {
 // r^2 = (1 - s) (x + y s + z s^2 + w s^3). A ball of diameter L is (0, L^2, 0, 0).
 struct DropProfile {
     double length = 0;
-    glm::dvec4 swell{0.0};
+    dvec4 swell{0.0};
 
     double square(double s) const { return (1 - s) * (swell.x + s * (swell.y + s * (swell.z + s * swell.w))); }
     double volume() const;

@@ -47,7 +47,7 @@ void PlacedFlow::look() {
 std::optional<SkinSearch::Hit> PlacedFlow::meets(const dvec3& from, const dvec3& to, double then) {
     look();
     const dmat4 now = glm::inverse(toWorld_), later = then == time_ ? now : glm::inverse(motion_(then));
-    return search_.first(vec3(now * glm::dvec4(from, 1)), vec3(later * glm::dvec4(to, 1)));
+    return search_.first(vec3(now * dvec4(from, 1)), vec3(later * dvec4(to, 1)));
 }
 
 SkinPoint PlacedFlow::nearest(const vec3& x) {
@@ -58,9 +58,9 @@ SkinPoint PlacedFlow::nearest(const vec3& x) {
 void PlacedFlow::land(const SkinSearch::Hit& where, const AirDrop& drop) {
     // The drop keeps its velocity along the skin, relative to the skin's rigid motion, limited to the speed of a drop that runs by itself.
     constexpr double kMoment = 1.0e-4;  // s
-    const glm::dvec4 at(dvec3(where.position), 1);
+    const dvec4 at(dvec3(where.position), 1);
     const dvec3 carried = dvec3(motion_(time_ + kMoment) * at - motion_(time_) * at) / kMoment;
-    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * (drop.velocity - carried));
+    vec3 v = vec3(glm::transpose(dmat3(toWorld_)) * (drop.velocity - carried));
     v -= where.normal * glm::dot(v, where.normal);
     constexpr float kMost = 0.2F;  // m/s
     if (const float speed = glm::length(v); speed > kMost) v *= kMost / speed;
@@ -70,7 +70,7 @@ void PlacedFlow::land(const SkinSearch::Hit& where, const AirDrop& drop) {
 HungDrop PlacedFlow::hung(const HangingDrop& drop) const {
     constexpr double kMostLean = 1.2, kPicolitre = 1.0e-15;
     const SurfaceFlowParams& p = flow_->params();
-    const glm::dmat3 turn(toWorld_);
+    const dmat3 turn(toWorld_);
     const dvec3 up = glm::normalize(dvec3(drop.up)), pull(drop.pull);
     const double away = std::max(glm::dot(pull, up), 1.0e-3);
     const double l = std::sqrt(double{p.surfaceTension} / (double{p.density} * away));
@@ -84,7 +84,7 @@ HungDrop PlacedFlow::hung(const HangingDrop& drop) const {
     // The skin, a ball, comes through the plane of the foot by this much.
     const double bent = std::min(curvature * std::sqrt(made.profile.square(0)), 1.0);
     const double through = curvature > 0 ? (1 - std::sqrt(1 - bent * bent)) / curvature : 0.0;
-    made.foot = dvec3(toWorld_ * glm::dvec4(dvec3(drop.position) - through * up, 1));
+    made.foot = dvec3(toWorld_ * dvec4(dvec3(drop.position) - through * up, 1));
     made.axis = turn * up;
     made.lean = turn * lean;
     made.opacity = std::clamp(double{(drop.share - HANGS_FROM) / (HANGS_FULLY - HANGS_FROM)}, 0.0, 1.0);

@@ -1,4 +1,5 @@
 // The light that the water refracts, as photons.
+#include <rivulet_glad/gl.h>
 #include <algorithm>
 #include <array>
 #include <glm/matrix.hpp>

@@ -1,4 +1,6 @@
 // Drops in the air and drops that hang, each by itself.
+#include <rivulet_glad/gl.h>
+
 #include "fluid/render/renderers.h"
 
 namespace rivulet {

@@ -2,6 +2,8 @@
 // nor on the distance.
 #pragma once
 
+#include <rivulet_glad/gl.h>
+
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "fluid/render/fluid_programs.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include "engine/core/assert.h"
 #include "fluid/render/filters.h"

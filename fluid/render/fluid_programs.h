@@ -28,8 +28,8 @@ struct ProgramRow {
 
 // A buffer that the vertex shader of a quad reads, one element for each row.
 struct QuadRows {
-    unsigned buffer = 0;  // GL name; 0: none
-    GLenum format = GL_RGBA32F;
+    unsigned buffer = 0;       // GL name; 0: none
+    unsigned format = 0x8814;  // GL_RGBA32F
 };
 
 // Rows of a buffer, from `first` on.

@@ -1,4 +1,6 @@
 // Spray, foam and bubbles as flecks.
+#include <rivulet_glad/gl.h>
+
 #include "fluid/render/renderers.h"
 
 namespace rivulet {

@@ -1,6 +1,7 @@
 #include "fluid/render/host_picture.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <cmath>
 #include <vector>

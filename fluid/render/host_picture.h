@@ -51,7 +51,7 @@ class HostPicture {
     gpu::Program in_, out_, outOpaque_;
     gpu::TextureName rawDepth_;
     gpu::FramebufferName rawFramebuffer_;
-    GLenum rawFormat_ = 0;
+    unsigned rawFormat_ = 0;
     gpu::Texture raw_, colour_, depth_;
     gpu::VertexArray none_;
     size_t most_ = SIZE_MAX;

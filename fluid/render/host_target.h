@@ -1,6 +1,8 @@
 // HostTarget: the framebuffer of a host, into which the water is drawn. Plain data.
 #pragma once
 
+#include "engine/core/abi.h"
+
 namespace rivulet {
 
 struct HostTarget {

@@ -1,4 +1,6 @@
 // Particles as lit spheres.
+#include <rivulet_glad/gl.h>
+
 #include "fluid/render/renderers.h"
 
 namespace rivulet {

@@ -1,5 +1,7 @@
 // The reference as a renderer: the iso-surface of the particles (Yu & Turk 2013), ray-marched on the host, in the light of the others, and
 // with their spray: pictures differ by the surface alone.
+#include <rivulet_glad/gl.h>
+
 #include <cstddef>
 #include <cstring>
 

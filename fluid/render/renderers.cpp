@@ -1,5 +1,7 @@
 #include "fluid/render/renderers.h"
 
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

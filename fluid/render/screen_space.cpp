@@ -1,5 +1,6 @@
 // A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a row of filters().
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <array>

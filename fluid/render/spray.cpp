@@ -1,4 +1,6 @@
 // The droplets of what has left the body of the water.
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 
 #include "fluid/render/renderers.h"

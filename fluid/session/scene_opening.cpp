@@ -1,6 +1,7 @@
 #include "fluid/session/scene_opening.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <chrono>
 #include <exception>

@@ -1,6 +1,7 @@
 #include "fluid/session/scene_renderer.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <numeric>

@@ -46,7 +46,7 @@ class SceneRenderer {
     void onProgress(std::function<bool(double)> progress) { progress_ = std::move(progress); }
 
     // The last picture, scaled into a framebuffer of this size (0: the window).
-    void present(GLuint framebuffer, int width, int height) const;
+    void present(unsigned framebuffer, int width, int height) const;
     // The last picture: RGBA8, sRGB, top row first, alpha 255. Waits for the GPU.
     std::vector<uint8_t> pixels() const;
     void finish();  // waits for the GPU: times() are then the last picture's, and onSpan() has received all

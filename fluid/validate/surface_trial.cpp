@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "engine/core/assert.h"
+#include "engine/gpu/fence.h"
+#include "fluid/render/backend.h"
 #include "fluid/render/raymarch.h"
 #include "fluid/validate/image_flip.h"
 #include "fluid/validate/surface_pictures.h"
@@ -210,7 +212,7 @@ Result<std::vector<double>> SurfaceTrial::drawMs(const FrameView& view, const Sc
     for (int k = -before; k < count; ++k) {
         const auto start = std::chrono::steady_clock::now();
         if (Status s = renderer_->draw(view, fluid, session_->solids(), scene); !s) return s.error();
-        glFinish();
+        gpu::Fence::now().wait();
         if (k >= 0) ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     return ms;
@@ -237,7 +239,7 @@ Result<DrawTimes> SurfaceTrial::times(const SurfaceLook& look) {
     return times;
 }
 
-std::string SurfaceTrial::drawnBy() const { return reinterpret_cast<const char*>(glGetString(GL_RENDERER)); }
+std::string SurfaceTrial::drawnBy() const { return currentGlFacts().renderer; }
 
 Result<Watched> SurfaceTrial::watch(const Watch& of, std::span<const SurfaceLook> looks) {
     FluidWorld& world = of.session.world();

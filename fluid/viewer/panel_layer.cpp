@@ -1,5 +1,7 @@
 #include "fluid/viewer/panel_layer.h"
 
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 
 #include "engine/core/thread_clock.h"

@@ -14,7 +14,7 @@ class PanelLayer {
     void begin(InputEvents input, double seconds);
     void made();  // all windows of this frame are described
     // Over what is in the framebuffer, of this size in pixels; 0: ends ImGui's frame and draws nothing.
-    void draw(GLuint framebuffer, int width, int height);
+    void draw(unsigned framebuffer, int width, int height);
     bool wantsMouse() const { return ui_.wantsMouse(); }
     bool wantsKeyboard() const { return ui_.wantsKeyboard(); }
     void enlarge(float factor);          // of the text; 0: as at the start. It stays within half and four times that

@@ -1,5 +1,7 @@
 #include "fluid/viewer/viewer.h"
 
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 #include <mutex>
 #include <utility>

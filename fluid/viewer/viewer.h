@@ -44,7 +44,7 @@ class Viewer {
     // Draws one picture. `seconds`: wall time since the last one. Steps the water at most once, when a sixtieth of a second has passed: a
     // slow machine shows slow water instead of fewer pictures. With fluid.fixedStep the water gets the whole time, up to
     // fluid.longestFrame. A window of 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.
-    Status frame(const InputEvents& input, double seconds, GLuint framebuffer);
+    Status frame(const InputEvents& input, double seconds, unsigned framebuffer);
 
     bool paused() const { return run_.paused(); }
     uint64_t steps() const { return run_.steps(); }
@@ -81,7 +81,7 @@ class Viewer {
     explicit Viewer(UiLayer ui) : ui_(std::move(ui)) {}
     Status start(const SceneFile& scene, const ViewerOptions& options);
     Status take(SceneRun::Result stepped);
-    Status draw(const InputEvents& input, GLuint framebuffer);
+    Status draw(const InputEvents& input, unsigned framebuffer);
     void report(const Status& status);  // as the message, if it is an Error
 
     // viewer_input.cpp

@@ -25,7 +25,7 @@ struct ViewerOptions {
     std::function<Result<SharedGl>()> share = {};
     // With `share`: called while the first scene is opened; it calls `draw` and shows the framebuffer. Returns false if the window was
     // closed. None: create() shows nothing until the scene is ready.
-    using Draw = std::function<void(const InputEvents& input, GLuint framebuffer)>;
+    using Draw = std::function<void(const InputEvents& input, unsigned framebuffer)>;
     std::function<bool(const Draw& draw)> showing = {};
     // Device::stopOn, of the devices that simulate: true interrupts a step, after which the viewer can only be destroyed. Null: nothing
     // does.

@@ -1,5 +1,6 @@
 // Viewer: edits, changed files, and other scenes.
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <chrono>

@@ -15,8 +15,6 @@
 
 namespace rivulet {
 
-using dmat3 = glm::dmat3;
-
 inline constexpr double kWindingRounding = 1e-9;  // turns
 inline constexpr double kFullSphere = 4.0 * std::numbers::pi;
 

@@ -2,8 +2,27 @@
 // (RIVULET_KERNEL_UNIT), which is compiled once for each instruction set inside a namespace of its own; there `real` is 8 lanes.
 #if !defined(RIVULET_KERNEL_UNIT)
 
-// No #pragma once: each shared header includes lang.h again, and lang_end.h last, so that none of these macros reaches a host.
+// No #pragma once: each shared header includes lang.h again, and lang_end.h last, so that none of these macros reaches a host, and a host's
+// own macros of these names stay as they are.
 #include "engine/core/math.h"
+#pragma push_macro("FN")
+#pragma push_macro("STRUCT")
+#pragma push_macro("CONSTANT")
+#pragma push_macro("GLOBAL")
+#pragma push_macro("PASS")
+#pragma push_macro("EXACT")
+#pragma push_macro("TO_INT")
+#pragma push_macro("TO_UINT")
+#pragma push_macro("TO_DOUBLE")
+#undef FN
+#undef STRUCT
+#undef CONSTANT
+#undef GLOBAL
+#undef PASS
+#undef EXACT
+#undef TO_INT
+#undef TO_UINT
+#undef TO_DOUBLE
 #define FN inline
 #define STRUCT(n) struct n
 #define CONSTANT(T, n, v) inline constexpr T n = v

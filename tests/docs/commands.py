@@ -149,6 +149,7 @@ for page in linked:
     if page.name in ("CHANGELOG.md", "parameters.md"):
         continue  # old names; keys that look like files
     for code in re.findall(r"`([^`\n]+)`", re.sub(r"^`[^`\n]+`, new:$", "", text, flags=re.M)):  # a recipe's new files
+        code = code.strip('"<>').removeprefix("rivulet/")  # as a host includes a header
         is_path = re.fullmatch(rf"({'|'.join(TOPS)})/[\w./*-]+", code) and re.search(r"/$|\*|\.\w+$", code)
         if is_path and not re.search("[A-Z]{4}", code) and not any(root.glob(code.rstrip("/"))):
             wrong.append(f"{name}: there is no file {code}")

@@ -1,5 +1,6 @@
 // look.detail: from afar fewer and larger splats are drawn, and the picture stays what it was.
 #include <gtest/gtest.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <array>

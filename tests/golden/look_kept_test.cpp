@@ -1,5 +1,6 @@
 // What is drawn of sleeping particles is kept: the picture is as without, and no splat of theirs is drawn again.
 #include <gtest/gtest.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <cmath>

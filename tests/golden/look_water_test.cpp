@@ -1,5 +1,6 @@
 // The water seen from inside, with many particles, next to another renderer, and its intermediate views.
 #include <gtest/gtest.h>
+#include <rivulet_glad/gl.h>
 
 #include <cmath>
 

@@ -1,4 +1,6 @@
 // Device gl meets the contract of Device, tested with kernels of the test.
+#include <rivulet_glad/gl.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>

@@ -4,6 +4,7 @@
 #include "engine/compute/cl_sharing.h"
 
 #include <gtest/gtest.h>
+#include <rivulet_glad/gl.h>
 
 #include <cstring>
 #include <map>

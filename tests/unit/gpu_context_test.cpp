@@ -1,6 +1,7 @@
 // Contexts: several headless ones exist together, windows deliver events, and a missing library gives an error message.
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
+#include <rivulet_glad/gl.h>
 #include <sys/wait.h>
 
 #include <chrono>

@@ -1,4 +1,6 @@
 // The frame graph's four promises: cull, pool, barriers, times.
+#include <rivulet_glad/gl.h>
+
 #include <cstring>
 
 #include "engine/gpu/frame_graph.h"

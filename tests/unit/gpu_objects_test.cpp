@@ -1,4 +1,6 @@
 // Owners of GL memory: contents survive the way there and back, names are given back, failures are sentences.
+#include <rivulet_glad/gl.h>
+
 #include <array>
 #include <cstring>
 #include <set>

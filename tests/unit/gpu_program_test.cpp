@@ -1,4 +1,6 @@
 // Programs: errors name the file and line they come from, a failed reload changes nothing.
+#include <rivulet_glad/gl.h>
+
 #include "engine/gpu/framebuffer.h"
 #include "engine/gpu/program.h"
 #include "engine/gpu/vertex_array.h"

@@ -91,6 +91,19 @@ TEST_F(KernelSourceTest, inlinesIncludesAndKeepsEveryLinesPlace) {
     EXPECT_EQ(believedPlace(opencl->text, "int a2;"), "\"shaders/a.kernel\":5");
 }
 
+// A host's kernel names our headers as its C++ compiler finds them; a file has one text whichever name it was included by.
+TEST_F(KernelSourceTest, readsThePublicNamesOfHeaders) {
+    file("shaders/common/c.h", "int c;\n");
+    file("shaders/b.h", "#include \"shaders/common/c.h\"\nint b;\n");
+    file("shaders/a.kernel", "#include \"rivulet/shaders/common/c.h\"\n#include \"rivulet/shaders/b.h\"\nint a;\n");
+    for (const Dialect dialect : {Dialect::glsl, Dialect::openclC}) {
+        const auto source = flatten(dialect);
+        ASSERT_TRUE(source) << source.error().message;
+        EXPECT_EQ(source->files, (std::vector<std::string>{"shaders/a.kernel", "shaders/common/c.h", "shaders/b.h"}));
+        EXPECT_EQ(occurrences(source->text, "int c;"), 1U);
+    }
+}
+
 TEST_F(KernelSourceTest, headerComesFirstThenDefines) {
     file("shaders/a.kernel", "int a;\n");
     const Define defines[] = {{"LOCAL_SIZE", "256"}, {"THESIS", ""}};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <imgui_internal.h>
+#include <rivulet_glad/gl.h>
 
 #include <cstdlib>
 #include <filesystem>

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <rivulet_glad/gl.h>
 
 #include <cstdlib>
 #include <optional>

@@ -2,6 +2,7 @@
 #include "fluid/render/water_renderer.h"
 
 #include <gtest/gtest.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <functional>

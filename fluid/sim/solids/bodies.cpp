@@ -11,9 +11,6 @@ namespace rivulet {
 
 namespace {
 
-using dquat = glm::dquat;
-using dmat3 = glm::dmat3;
-
 // The smoothing kernels' shapes, as shaders/fluid/methods/shape.h has them.
 double shapeOf(bool cubic, double q) {
     const double a = std::max(1.0 - q, 0.0);

@@ -13,8 +13,6 @@ namespace rivulet {
 
 namespace {
 
-using dmat3 = glm::dmat3;
-
 constexpr float kApart = 0.8F;        // spacings: no two darts are nearer
 constexpr double kDartsEach = 40;     // darts thrown per square spacing
 constexpr double kMostDarts = 4.0e7;  // beyond this a mesh has more samples than any fluid has particles

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "rivulet.h"
+#include <rivulet/rivulet.h>
 
 static int failures = 0;
 

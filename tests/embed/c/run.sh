@@ -13,8 +13,8 @@ library="$(pkg-config --variable=libdir rivulet)/librivulet.so"
 warnings="-Wall -Wextra -Wpedantic -Werror"
 read -ra flags <<<"$(pkg-config --cflags rivulet)"
 for language in "cc -x c -std=c11" "c++ -x c++ -std=c++17"; do
-    for header in "$(pkg-config --variable=includedir rivulet)"/fluid/capi/rivulet*.h; do
-        printf '#include <%s>\n' "${header##*/}" | $language $warnings "${flags[@]}" -fsyntax-only -
+    for header in "$(pkg-config --variable=includedir rivulet)"/rivulet/rivulet*.h; do
+        printf "#include <rivulet/%s>\n" "${header##*/}" | $language $warnings "${flags[@]}" -fsyntax-only -
     done
 done
 
@@ -41,7 +41,7 @@ fi
 # And of what it shows, nothing but rivulet.h: a host may have names of its own.
 others="$(nm -D --defined-only "$library" | awk '{ print $3 }' | grep -v '^rivulet_' || true)"
 [ -z "$others" ] || [ "${cc[0]}" = clang ] || { echo "librivulet.so shows more than rivulet.h: $others"; exit 1; }
-declared="$(grep -oh '\brivulet_[a-z_]*(' "$(pkg-config --variable=includedir rivulet)"/fluid/capi/rivulet_*.h | tr -d '(' | sort -u)"
+declared="$(grep -oh '\brivulet_[a-z_]*(' "$(pkg-config --variable=includedir rivulet)"/rivulet/rivulet_*.h | tr -d '(' | sort -u)"
 shown="$(nm -D --defined-only "$library" | awk '{ print $3 }' | grep '^rivulet_' | sort -u)"
 for name in $shown; do
     grep -q "\b$name(" "$here"/*.c || { echo "$name is not used by a test"; exit 1; }

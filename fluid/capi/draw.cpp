@@ -45,9 +45,9 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         FrameView frame;
         frame.view = matrixOf(v.view);
         frame.projection = matrixOf(v.projection);
-        frame.cameraPosWorld = vec3(glm::inverse(frame.view)[3]);
         frame.nearPlane = v.near_plane;
         frame.farPlane = v.far_plane;
+        if (v.units_per_metre != 0) frame.unitsPerMetre = v.units_per_metre;
         frame.width = t.width;
         frame.height = t.height;
         if (isSet(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);

@@ -47,39 +47,6 @@ std::vector<GLenum> depthFormats(GLuint framebuffer) {
     return all;
 }
 
-bool isPerspective(const mat4& p) {
-    return p[0][0] != 0 && p[1][1] != 0 && p[0][1] == 0 && p[0][2] == 0 && p[0][3] == 0 && p[1][0] == 0 && p[1][2] == 0 && p[1][3] == 0 &&
-           p[2][3] == -1 && p[3][3] == 0 && p[3][0] == 0 && p[3][1] == 0;
-}
-
-bool isFinite(const mat4& m) {
-    for (int column = 0; column < 4; ++column)
-        if (!rivulet::isFinite(vec3(m[column])) || !std::isfinite(m[column].w)) return false;
-    return true;
-}
-
-// True if the matrix is a rotation and a translation, without scale; a mirror image is accepted.
-bool isRigid(const mat4& m) {
-    constexpr float kOff = 1.0e-3F;
-    for (int a = 0; a < 3; ++a)
-        for (int b = 0; b <= a; ++b)
-            if (!(std::abs(glm::dot(vec3(m[a]), vec3(m[b])) - (a == b ? 1.0F : 0.0F)) < kOff)) return false;
-    return m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1;
-}
-
-Status usable(const FrameView& v) {
-    if (!isFinite(v.view) || !isFinite(v.projection)) return badInput("FrameView::view or projection has a value that is not finite");
-    if (!isRigid(v.view))
-        return badInput("FrameView::view is not a rotation and a translation; use glm::lookAt, and scale the scene instead");
-    if (!isPerspective(v.projection))
-        return badInput("FrameView::projection is not a perspective projection; use glm::perspective or glFrustum");
-    if (!(v.nearPlane > 0) || !(v.farPlane > v.nearPlane) || !std::isfinite(v.farPlane))
-        return badInput("FrameView::nearPlane and farPlane must be positive and finite, the second beyond the first (m)");
-    if (!rivulet::isFinite(v.lightDirWorld) || v.lightDirWorld == vec3(0.0F) || !rivulet::isFinite(v.lightColour))
-        return badInput("FrameView::lightDirWorld or lightColour is not finite, or the direction is 0");
-    return ok();
-}
-
 // Error (badInput): water cannot be drawn into the target.
 Status usable(const HostTarget& t) {
     if (t.width <= 0 || t.height <= 0)
@@ -97,15 +64,6 @@ Status usable(const HostTarget& t) {
 }
 
 }  // namespace
-
-HostDepth HostDepth::current() {
-    GLint origin = 0, mode = 0;
-    glGetIntegerv(GL_CLIP_ORIGIN, &origin);
-    glGetIntegerv(GL_CLIP_DEPTH_MODE, &mode);
-    GLfloat range[2] = {0, 1};
-    glGetFloatv(GL_DEPTH_RANGE, range);
-    return {.zeroToOne = mode == GL_ZERO_TO_ONE, .upperLeft = origin == GL_UPPER_LEFT, .near = range[0], .far = range[1]};
-}
 
 Status HostPicture::nothingUnderWay() {
     GLboolean active = GL_FALSE, paused = GL_FALSE;
@@ -194,18 +152,12 @@ Status HostPicture::takeDepth(const HostTarget& t) {
 
 Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const FrameView& host) {
     if (Status can = usable(t); !can) return can;
-    if (Status can = usable(host); !can) return can;
-    if (depth.upperLeft) return badInput("glClipControl is set to GL_UPPER_LEFT; set GL_LOWER_LEFT, GL_ZERO_TO_ONE may stay");
+    Result<HostView> seen = HostView::of(host, depth, t.width, t.height);
+    if (!seen) return seen.error();
     if (Status fitting = fit(t.width, t.height); !fitting) return fitting;
     target_ = t;
     hostDepth_ = depth;
-    hostPlanes_ = vec2(host.projection[2][2], host.projection[3][2]);
-    view_ = host;
-    view_.width = t.width;
-    view_.height = t.height;
-    const float n = host.nearPlane, f = host.farPlane;
-    view_.projection[2][2] = -(f + n) / (f - n);
-    view_.projection[3][2] = -2 * f * n / (f - n);
+    seen_ = *seen;
 
     // Colour: the content of the first draw buffer.
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, t.framebuffer);
@@ -238,15 +190,23 @@ Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const Fram
     in_.set("hostDepth", 1);
     glBindTextureUnit(1, depthThere_ ? rawDepth_.name() : raw_.name());
     in_.set("depthThere", depthThere_ ? 1 : 0);
-    in_.set("isLinear", linear_ ? 1 : 0);
-    in_.set("hostPlanes", vec4(hostPlanes_, hostDepth_.near, hostDepth_.far));
-    in_.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
-    in_.set("planes", vec2(view_.projection[2][2], view_.projection[3][2]));
+    setUniforms(in_);
+    in_.set("planes", planes());
     none_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);
     return ok();
+}
+
+void HostPicture::setUniforms(gpu::Program& p) const {
+    p.set("isLinear", linear_ ? 1 : 0);
+    p.set("depthRow", seen_.depthRow);
+    p.set("hostParallel", seen_.view.parallel() ? 1 : 0);
+    p.set("hostRange", vec2(hostDepth_.near, hostDepth_.far));
+    p.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
+    const bool x = seen_.flipX, y = seen_.flipY;
+    p.set("mirror", vec4(x ? target_.width - 1 : 0, y ? target_.height - 1 : 0, x ? -1 : 1, y ? -1 : 1));
 }
 
 size_t HostPicture::bytes() const {
@@ -270,11 +230,9 @@ void HostPicture::give(const gpu::Texture& picture, const gpu::Texture* fluidDep
     p.texture("depths", 3, fluidDepth != nullptr ? *fluidDepth : depth_);
     p.set("hostDepth", 4);
     glBindTextureUnit(4, depthThere_ ? rawDepth_.name() : raw_.name());
-    p.set("isLinear", linear_ ? 1 : 0);
-    p.set("hostPlanes", vec4(hostPlanes_, hostDepth_.near, hostDepth_.far));
-    p.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
+    setUniforms(p);
     p.set("origin", ivec2(target_.x, target_.y));
-    if (fluidDepth == nullptr) p.set("planes", vec2(view_.projection[2][2], view_.projection[3][2]));
+    if (fluidDepth == nullptr) p.set("planes", planes());
     none_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -5,17 +5,10 @@
 #include "engine/gpu/framebuffer.h"
 #include "engine/gpu/program.h"
 #include "engine/gpu/vertex_array.h"
-#include "engine/render/frame_view.h"
 #include "fluid/render/host_target.h"
+#include "fluid/render/host_view.h"
 
 namespace rivulet {
-
-// The host's depth convention, read from OpenGL before gpu::HostState changes its state.
-struct HostDepth {
-    bool zeroToOne = false, upperLeft = false;  // glClipControl: GL_ZERO_TO_ONE, GL_UPPER_LEFT
-    float near = 0, far = 1;                    // glDepthRange
-    static HostDepth current();
-};
 
 class HostPicture {
   public:
@@ -26,10 +19,9 @@ class HostPicture {
     // Call it before gpu::HostState.
     static Status nothingUnderWay();
     // Fetches the scene, in the plain state that gpu::HostState makes. Error (badInput): a target of no size, that is incomplete, without a
-    // colour or of whole numbers; a view that is not finite or scales; a projection that is not a perspective; GL_UPPER_LEFT. (failed): out
-    // of memory; a depth that cannot be copied.
+    // colour or of whole numbers; as HostView::of. (failed): out of memory; a depth that cannot be copied.
     Status take(const HostTarget& target, const HostDepth& depth, const FrameView& host);
-    const FrameView& view() const { return view_; }         // the host's, with Rivulet's depth convention and the target's size
+    const FrameView& view() const { return seen_.view; }    // the host's, in Rivulet's convention, of the target's size
     const gpu::Texture& colour() const { return colour_; }  // rgba16f, linear radiance
     const gpu::Texture& depth() const { return depth_; }    // depth32f, window depth by view()'s projection
     size_t bytes() const;                                   // of its textures
@@ -41,12 +33,13 @@ class HostPicture {
 
   private:
     Status fit(int width, int height);
+    vec2 planes() const { return {seen_.view.projection[2][2], seen_.view.projection[3][2]}; }
     Status takeDepth(const HostTarget& target);
+    void setUniforms(gpu::Program& program) const;  // of host.glsl, the same in both directions
 
     HostTarget target_;
     HostDepth hostDepth_;
-    vec2 hostPlanes_{0.0F};  // [2][2] and [3][2] of the host's projection
-    FrameView view_;
+    HostView seen_;
     bool linear_ = false, depthThere_ = false;
     gpu::Program in_, out_, outOpaque_;
     gpu::TextureName rawDepth_;

@@ -32,12 +32,12 @@ void upload(const gpu::Texture& to, const std::vector<T>& texels) {
     glTextureSubImage2D(to.name(), 0, 0, 0, to.width(), to.height(), format.layout, format.type, texels.data());
 }
 
-// Along the view axis, m, from window depth; see frame.glsl.
+// Along the view axis, m, from window depth: depthOfWindow() of frame.glsl.
 std::vector<float> sceneDepths(const gpu::Texture& window, const FrameView& view) {
     std::vector<float> depths(static_cast<size_t>(window.width()) * static_cast<size_t>(window.height()));
     window.read(std::as_writable_bytes(std::span(depths)));
     const float a = view.projection[2][2], b = view.projection[3][2];
-    for (float& z : depths) z = b / (2 * z - 1 + a);
+    for (float& z : depths) z = view.parallel() ? (b + 1 - 2 * z) / a : b / (2 * z - 1 + a);
     return depths;
 }
 

@@ -48,7 +48,8 @@ Splats splatsOf(const FluidDraw& d, float radius, int scale) {
     const float wide = std::abs(p[0][0]), tall = std::abs(p[1][1]);
     const float x = (1.0F + std::abs(p[2][0])) / wide, y = (1.0F + std::abs(p[2][1])) / tall;
     const float pixels = std::max(wide * target.x, tall * target.y);  // of 2 m at a depth of 1 m
-    const float largest = kLongest * radius * std::sqrt(1.0F + x * x + y * y) * pixels / nearest;
+    const float slant = d.view.parallel() ? 1.0F : std::sqrt(1.0F + x * x + y * y);
+    const float largest = kLongest * radius * slant * pixels / d.view.spreadAt(nearest);
     // From afar one represents others, and is larger: see representedBy().
     const float far = std::min(kMostLarger * largest, 2 * kLongest * kMostLarger * detailOf(d));
     return {target, detailOf(d) > 0 ? std::max(largest, far) : largest};

@@ -70,7 +70,8 @@ Drawn allOf(const FluidView& f) {
 int thicknessReach(const FluidDraw& d, int scale) {
     const vec3 middle = d.fluid.bounds.empty() ? vec3(0.0F) : d.fluid.bounds.centre();
     const float depth = std::max(-(d.view.view * vec4(middle, 1.0F)).z, d.view.nearPlane);
-    const float texel = 2.0F * static_cast<float>(scale) * depth / (d.view.projection[1][1] * static_cast<float>(d.view.height));
+    const float texel =
+        2.0F * static_cast<float>(scale) * d.view.spreadAt(depth) / (d.view.projection[1][1] * static_cast<float>(d.view.height));
     // At least four pixels, or from afar texels of one size and of another would show.
     return std::clamp(static_cast<int>(std::lround(kThicknessBlur * d.fluid.spacing / texel)), std::max(4 / scale, 1), kMostThicknessBlur);
 }

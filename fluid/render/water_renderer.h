@@ -41,10 +41,12 @@ class WaterRenderer {
     WaterRenderer& operator=(const WaterRenderer&) = delete;
 
     // Draws over the picture in `target`: nearer surfaces hide the water, farther ones are seen through it, refracted. Colours and depths
-    // change only where there is water. `view.width` and `height` are the target's; `view.projection` is the one that the target's
-    // depth was drawn with, in any depth mode of glClipControl, reversed or not; nearPlane and farPlane (m) are finite and enclose the
-    // scene. Light is in the target's units: in an srgb target, 1 is white. `row`: a row of renderers(), or one of the host; null: the
-    // water's surface. Error: (badInput) a condition above that does not hold; (failed) out of memory.
+    // change only where there is water. `view.view` and `projection` are those that the target's depth was drawn with: a perspective or an
+    // orthographic projection, in any mode of glClipControl, reversed or not, right- or left-handed, mirrored or not, with an oblique near
+    // plane or not. nearPlane and farPlane are finite and enclose the scene. All are in the host's unit of length, of which
+    // `view.unitsPerMetre` are a metre; cameraPosWorld, width and height are not read. Light is in the target's units: in an srgb target, 1
+    // is white. `row`: a row of renderers(), or one of the host; null: the water's surface. Error: (badInput) a condition above that does
+    // not hold; (failed) out of memory.
     Status draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
                 const RendererRow* row = nullptr);
 

@@ -43,7 +43,8 @@ inline Status ready(rivulet_context& context, Needs needs) {
 class CallScope {
   public:
     CallScope(rivulet_context& context, Needs needs) : context_(context) {
-        if (needsGl(context, needs)) context_.hostGl.emplace();  // may throw
+        if (needsGl(context, needs))
+            context_.hostGl.emplace(context.plainState ? gpu::HostState::nothing : gpu::HostState::rivulets);  // may throw
         context_.busy = true;
     }
     ~CallScope() {

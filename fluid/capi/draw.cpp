@@ -6,7 +6,6 @@
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
-#include "fluid/render/host_picture.h"
 #include "fluid/render/renderers.h"
 
 using namespace rivulet;
@@ -59,14 +58,10 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
                             .width = t.width,
                             .height = t.height,
                             .colours = static_cast<HostTarget::Colours>(t.colours)};
-        if (Status can = HostPicture::nothingUnderWay(); !can) return can;
-        const auto uploaded = [&] {
-            const CallScope scope(*world->context, Needs::drawing);
-            return world->upload.view(*world->world, world->params.look);
-        };
-        Result<FluidView> fluid = uploaded();
+        const CallScope scope(*world->context, Needs::drawing);
+        Result<FluidView> fluid = world->upload.view(*world->world, world->params.look);
         if (!fluid) return fluid.error();
-        return world->context->water->draw(frame, *fluid, *look, to, row);
+        return world->context->water->draw(*world->context->hostGl, frame, *fluid, *look, to, row);
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
     return status;

@@ -58,6 +58,10 @@ typedef struct rivulet_context_options {
     float sky_horizon[3], sky_zenith[3]; /* reflected by the water, radiance in the target's units; all 0: a grey-blue sky */
     float sky_sun[3];                    /* towards the sun; all 0: the default light direction of rivulet_view */
     float clouds;                        /* share of the sky that they cover, 0 to 1, approximate */
+    /* 0: every call restores the host's OpenGL state. 1: no call asks for it, which saves about 130 calls of OpenGL; for a host that sets
+       the state it needs. Afterwards state is as in a new context, and nothing is bound to framebuffers, to texture units 0 to 11, 16 and
+       24 to 30, to uniform buffers 0 to 3 and to storage buffers 0 to 8; viewport 0 and its scissor box have any value. */
+    uint32_t plain_state;
 } rivulet_context_options;
 
 RIVULET_API rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <vector>
 
 #include "engine/core/readable_bytes.h"
@@ -10,6 +10,8 @@
 
 namespace rivulet {
 namespace {
+
+constexpr uint64_t kKeepDraws = 24;  // pictures of a size not drawn for this many draws are freed
 
 GLint asked(GLuint framebuffer, GLenum attachment, GLenum what) {
     GLint value = 0;
@@ -68,7 +70,7 @@ Status usable(const HostTarget& t) {
 Status HostPicture::nothingUnderWay() {
     GLboolean active = GL_FALSE, paused = GL_FALSE;
     glGetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
-    glGetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
+    if (active == GL_TRUE) glGetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
     if (active == GL_TRUE && paused == GL_FALSE) return badInput("transform feedback is active; pause or end it before drawing water");
     for (const GLenum counts : {GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, GL_PRIMITIVES_GENERATED,
                                 GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN}) {
@@ -93,64 +95,86 @@ Result<HostPicture> HostPicture::create(const ShaderFiles& files) {
         *program = std::move(*result);
     }
     p.none_ = gpu::VertexArray::create();
+    glGetIntegerv(GL_MAX_DRAW_BUFFERS, &p.mostOutputs_);
     return p;
 }
 
-Status HostPicture::fit(int width, int height) {
-    if (colour_ && colour_.width() == width && colour_.height() == height) return ok();
-    const std::pair<gpu::Texture*, gpu::Format> wanted[] = {
-        {&raw_, gpu::Format::rgba16f}, {&colour_, gpu::Format::rgba16f}, {&depth_, gpu::Format::depth32f}};
-    colour_ = {};  // if one fails, all are created again next time
-    size_t needed = 0;
-    for (const auto& [texture, format] : wanted) needed += gpu::TextureDesc{.width = width, .height = height, .format = format}.bytes();
+size_t HostPicture::Pictures::bytes() const {
     // And a copy of the host's depth in its own format.
-    needed += gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}.bytes();
+    return raw.desc().bytes() + colour.desc().bytes() + depth.desc().bytes() * (1 + std::max<size_t>(rawDepths.size(), 1));
+}
+
+Status HostPicture::fit(int width, int height) {
+    ++draws_;
+    std::erase_if(all_, [&](const auto& p) { return p->used + kKeepDraws < draws_; });
+    const auto at =
+        std::find_if(all_.begin(), all_.end(), [&](const auto& p) { return p->colour.width() == width && p->colour.height() == height; });
+    now_ = at != all_.end() ? at->get() : nullptr;
+    if (now_ != nullptr) {
+        now_->used = draws_;
+        return ok();
+    }
+    auto made = std::make_unique<Pictures>();
+    const std::pair<gpu::Texture*, gpu::Format> wanted[] = {
+        {&made->raw, gpu::Format::rgba16f}, {&made->colour, gpu::Format::rgba16f}, {&made->depth, gpu::Format::depth32f}};
+    size_t needed = gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}.bytes();  // as bytes()
+    for (const auto& [texture, format] : wanted) needed += gpu::TextureDesc{.width = width, .height = height, .format = format}.bytes();
+    if (bytes() + needed > most_) all_.clear();
     if (needed > most_)
         return failed(fmt::format("a picture of {} x {} pixels needs {}, and {} are allowed for pictures; allow more, or draw fewer pixels",
                                   width, height, readableBytes(needed), readableBytes(most_)));
     for (const auto& [texture, format] : wanted) {
-        Result<gpu::Texture> made = gpu::Texture::create({.width = width, .height = height, .format = format});
-        if (!made) return made.error();
-        *texture = std::move(*made);
+        Result<gpu::Texture> texels = gpu::Texture::create({.width = width, .height = height, .format = format});
+        if (!texels) return texels.error();
+        *texture = std::move(*texels);
     }
-    raw_.setSampling({.min = gpu::Filter::nearest, .mag = gpu::Filter::nearest});
-    rawFormat_ = 0;
+    made->raw.setSampling({.min = gpu::Filter::nearest, .mag = gpu::Filter::nearest});
+    made->rawTarget = gpu::Framebuffer(made->raw, nullptr);
+    made->target = gpu::Framebuffer(made->colour, &made->depth);
+    made->used = draws_;
+    all_.push_back(std::move(made));
+    now_ = all_.back().get();
     return ok();
 }
 
 Status HostPicture::takeDepth(const HostTarget& t) {
     const std::vector<GLenum> formats = depthFormats(t.framebuffer);
-    depthThere_ = !formats.empty();
+    rawDepth_ = 0;
+    std::vector<RawDepth>& kept = now_->rawDepths;
     for (const GLenum format : formats) {
-        if (rawFormat_ != format) {
+        auto raw = std::find_if(kept.begin(), kept.end(), [&](const RawDepth& r) { return r.format == format; });
+        gpu::clearGlErrors();
+        if (raw == kept.end()) {
+            RawDepth made{.format = format, .texture = {}, .framebuffer = {}};
             GLuint name = 0;
             glCreateTextures(GL_TEXTURE_2D, 1, &name);
-            rawDepth_ = gpu::TextureName(name);
-            gpu::clearGlErrors();
-            glTextureStorage2D(name, 1, format, raw_.width(), raw_.height());
+            made.texture = gpu::TextureName(name);
+            glTextureStorage2D(name, 1, format, now_->raw.width(), now_->raw.height());
             if (gpu::takeGlError() != GL_NO_ERROR) continue;
             glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
             glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
             const bool both = format == GL_DEPTH24_STENCIL8 || format == GL_DEPTH32F_STENCIL8;
             glCreateFramebuffers(1, &name);
-            rawFramebuffer_ = gpu::FramebufferName(name);
-            glNamedFramebufferTexture(name, both ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, rawDepth_.name(), 0);
+            made.framebuffer = gpu::FramebufferName(name);
+            glNamedFramebufferTexture(name, both ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, made.texture.name(), 0);
             glNamedFramebufferDrawBuffer(name, GL_NONE);
-            rawFormat_ = format;
+            raw = kept.insert(kept.end(), std::move(made));
         }
-        gpu::clearGlErrors();
-        glBlitNamedFramebuffer(t.framebuffer, rawFramebuffer_.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
+        glBlitNamedFramebuffer(t.framebuffer, raw->framebuffer.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
                                GL_DEPTH_BUFFER_BIT, GL_NEAREST);
-        if (gpu::takeGlError() == GL_NO_ERROR) return ok();
-        rawFormat_ = 0;
+        if (gpu::takeGlError() == GL_NO_ERROR) {
+            rawDepth_ = raw->texture.name();
+            return ok();
+        }
+        kept.erase(raw);  // not the host's format
     }
-    if (depthThere_)
+    if (!formats.empty())
         return failed(
             fmt::format("the depth of framebuffer {} has a format that cannot be copied; use 24 bits or 32-bit floats", t.framebuffer));
     return ok();
 }
 
-Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const FrameView& host) {
+Status HostPicture::take(const HostTarget& t, const gpu::HostDepth& depth, const FrameView& host) {
     if (Status can = usable(t); !can) return can;
     Result<HostView> seen = HostView::of(host, depth, t.width, t.height);
     if (!seen) return seen.error();
@@ -175,21 +199,19 @@ Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const Fram
     glBindFramebuffer(GL_READ_FRAMEBUFFER, t.framebuffer);
     glGetIntegerv(GL_READ_BUFFER, &reads);
     if (reads != draws) glNamedFramebufferReadBuffer(t.framebuffer, static_cast<GLenum>(draws));
-    gpu::Framebuffer raw(raw_, nullptr);
-    glBlitNamedFramebuffer(t.framebuffer, raw.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height, GL_COLOR_BUFFER_BIT,
-                           GL_NEAREST);
+    glBlitNamedFramebuffer(t.framebuffer, now_->rawTarget.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     if (reads != draws) glNamedFramebufferReadBuffer(t.framebuffer, static_cast<GLenum>(reads));
     if (Status taken = takeDepth(t); !taken) return taken;
 
-    const gpu::Framebuffer into(colour_, &depth_);
-    into.bind();
+    now_->target.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     in_.use();
-    in_.texture("hostColour", 0, raw_);
+    in_.texture("hostColour", 0, now_->raw);
     in_.set("hostDepth", 1);
-    glBindTextureUnit(1, depthThere_ ? rawDepth_.name() : raw_.name());
-    in_.set("depthThere", depthThere_ ? 1 : 0);
+    glBindTextureUnit(1, rawDepth_ != 0 ? rawDepth_ : now_->raw.name());
+    in_.set("depthThere", rawDepth_ != 0 ? 1 : 0);
     setUniforms(in_);
     in_.set("planes", planes());
     none_.bind();
@@ -210,32 +232,50 @@ void HostPicture::setUniforms(gpu::Program& p) const {
 }
 
 size_t HostPicture::bytes() const {
-    if (!colour_) return 0;
-    return raw_.desc().bytes() + colour_.desc().bytes() + 2 * depth_.desc().bytes();
+    size_t sum = 0;
+    for (const auto& p : all_) sum += p->bytes();
+    return sum;
+}
+
+// The shader writes the first output alone; others of the host's would receive undefined values.
+void HostPicture::limitOutputs() {
+    masked_.clear();
+    for (GLint k = 1; k < mostOutputs_; ++k) {
+        GLint to = GL_NONE;
+        glGetIntegerv(GL_DRAW_BUFFER0 + static_cast<GLenum>(k), &to);
+        if (to == GL_NONE) continue;
+        Output output{.index = static_cast<GLuint>(k), .mask = {}};
+        glGetBooleani_v(GL_COLOR_WRITEMASK, output.index, output.mask.data());
+        glColorMaski(output.index, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        masked_.push_back(output);
+    }
+}
+
+void HostPicture::freeOutputs() {
+    for (const Output& output : masked_) glColorMaski(output.index, output.mask[0], output.mask[1], output.mask[2], output.mask[3]);
 }
 
 void HostPicture::give(const gpu::Texture& picture, const gpu::Texture* fluidDepth) {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target_.framebuffer);
-    glViewport(target_.x, target_.y, target_.width, target_.height);
-    GLint buffers = 0;
-    glGetIntegerv(GL_MAX_DRAW_BUFFERS, &buffers);
-    for (GLint k = 1; k < buffers; ++k) glColorMaski(static_cast<GLuint>(k), GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glViewportIndexedf(0, static_cast<float>(target_.x), static_cast<float>(target_.y), static_cast<float>(target_.width),
+                       static_cast<float>(target_.height));
+    limitOutputs();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     gpu::Program& p = fluidDepth != nullptr ? out_ : outOpaque_;
     p.use();
     p.texture("picture", 0, picture);
-    p.texture("scene", 1, colour_);
-    p.texture("hostColour", 2, raw_);
-    p.texture("depths", 3, fluidDepth != nullptr ? *fluidDepth : depth_);
+    p.texture("scene", 1, now_->colour);
+    p.texture("hostColour", 2, now_->raw);
+    p.texture("depths", 3, fluidDepth != nullptr ? *fluidDepth : now_->depth);
     p.set("hostDepth", 4);
-    glBindTextureUnit(4, depthThere_ ? rawDepth_.name() : raw_.name());
+    glBindTextureUnit(4, rawDepth_ != 0 ? rawDepth_ : now_->raw.name());
     setUniforms(p);
     p.set("origin", ivec2(target_.x, target_.y));
     if (fluidDepth == nullptr) p.set("planes", planes());
     none_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    freeOutputs();
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);
 }

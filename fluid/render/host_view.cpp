@@ -1,7 +1,5 @@
 #include "fluid/render/host_view.h"
 
-#include <rivulet_glad/gl.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
@@ -121,16 +119,7 @@ Result<Axes> orthographicAxes(const Rows& m, const dvec4& viewZ, const FrameView
 
 }  // namespace
 
-HostDepth HostDepth::current() {
-    GLint origin = 0, mode = 0;
-    glGetIntegerv(GL_CLIP_ORIGIN, &origin);
-    glGetIntegerv(GL_CLIP_DEPTH_MODE, &mode);
-    GLfloat range[2] = {0, 1};
-    glGetFloatv(GL_DEPTH_RANGE, range);
-    return {.zeroToOne = mode == GL_ZERO_TO_ONE, .upperLeft = origin == GL_UPPER_LEFT, .near = range[0], .far = range[1]};
-}
-
-Result<HostView> HostView::of(const FrameView& host, const HostDepth& depth, int width, int height) {
+Result<HostView> HostView::of(const FrameView& host, const gpu::HostDepth& depth, int width, int height) {
     if (!isFinite(host.view) || !isFinite(host.projection)) return badInput("FrameView::view or projection has a value that is not finite");
     const mat4& p = host.projection;
     const bool parallel = p[0][3] == 0 && p[1][3] == 0 && p[2][3] == 0;

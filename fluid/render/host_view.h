@@ -3,16 +3,10 @@
 #pragma once
 
 #include "engine/core/result.h"
+#include "engine/gpu/host_state.h"
 #include "engine/render/frame_view.h"
 
 namespace rivulet {
-
-// The host's depth convention, read from OpenGL before gpu::HostState changes its state.
-struct HostDepth {
-    bool zeroToOne = false, upperLeft = false;  // glClipControl: GL_ZERO_TO_ONE, GL_UPPER_LEFT
-    float near = 0, far = 1;                    // glDepthRange
-    static HostDepth current();
-};
 
 struct HostView {
     FrameView view;  // the same camera; its picture is the host's, mirrored as `flipX` and `flipY` say
@@ -23,7 +17,7 @@ struct HostView {
 
     // Any matrices of a camera: mirrored, left-handed, scaled, of an oblique near plane (Lengyel 2005). `width`, `height`: of the target,
     // pixels. Error (badInput): a value that is not finite; planes out of order; a matrix that is singular or skews the picture.
-    static Result<HostView> of(const FrameView& host, const HostDepth& depth, int width, int height);
+    static Result<HostView> of(const FrameView& host, const gpu::HostDepth& depth, int width, int height);
 };
 
 }  // namespace rivulet

@@ -78,9 +78,13 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
     size.format = Format::rgba32f;
     water.normals = graph.texture("reference normals", size);
     water.tiles = graph.texture("all tiles", {.width = 1, .height = 1, .format = Format::r8});
-    graph.pass("all tiles", {}, {water.tiles}, [=](PassContext& c) { c.drawTo({water.tiles}).clearColour(vec4(1.0F)); });
+    graph.pass("all tiles", {}, {water.tiles}, [=](PassContext& c) {
+        c.state({});
+        c.drawTo({water.tiles}).clearColour(vec4(1.0F));
+    });
     graph.pass("reference", {{d.position, Usage::copy}, {d.depth, Usage::copy}}, {{water.depth, Usage::copy}, {water.normals, Usage::copy}},
                [=, &programs](PassContext& c) {
+                   c.state({});
                    std::vector<vec4> particles(d.fluid.count);
                    glGetNamedBufferSubData(c.buffer(d.position), 0, static_cast<GLsizeiptr>(particles.size() * sizeof(vec4)),
                                            particles.data());

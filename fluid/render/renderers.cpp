@@ -58,6 +58,7 @@ Splats splatsOf(const FluidDraw& d, float radius, int scale) {
 void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle from, gpu::TextureHandle to,
                 const std::function<void()>& done) {
     graph.pass(name, {{from, gpu::Usage::copy}}, {{to, gpu::Usage::copy}}, [=](gpu::PassContext& c) {
+        c.state({});
         const gpu::Texture &a = c.texture(from), &b = c.texture(to);
         glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);
         if (done) done();
@@ -74,6 +75,7 @@ gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, con
     const gpu::TextureDesc size = tilesOf(d.view);
     const gpu::TextureHandle tiles = graph.texture("water tiles", size);
     graph.pass("tiles", splatReads(d), {tiles}, [=, &programs](gpu::PassContext& c) {
+        c.state({});
         c.drawTo({tiles}).clearColour(vec4(0.0F));
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         gpu::Program& mark = programs.splat("mark tiles", d.fluid);

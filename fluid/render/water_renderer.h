@@ -23,6 +23,9 @@
 namespace rivulet {
 
 struct RendererRow;  // fluid/render/renderers.h
+namespace gpu {
+class HostState;  // engine/gpu/host_state.h
+}
 
 struct WaterRendererOptions {
     // Reflected by the water beside the picture itself: a map of the surroundings (read once; radiance in the target's units); null: `sky`.
@@ -48,6 +51,9 @@ class WaterRenderer {
     // is white. `row`: a row of renderers(), or one of the host; null: the water's surface. Error: (badInput) a condition above that does
     // not hold; (failed) out of memory.
     Status draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
+                const RendererRow* row = nullptr);
+    // The same within a scope of HostState that the host holds, around several calls: state is saved once.
+    Status draw(const gpu::HostState& scope, const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
                 const RendererRow* row = nullptr);
 
     const std::vector<PassTime>& times() const;  // GPU ms a pass, two or three frames late

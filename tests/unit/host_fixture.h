@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/render/frame_view.h"
+#include "fluid/render/fluid_view.h"
 #include "fluid/render/host_target.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/host_picture.h"

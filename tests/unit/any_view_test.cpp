@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <functional>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
 #include "engine/gpu/device_gl.h"
+#include "engine/gpu/host_state.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
 #include "fluid/render/water_renderer.h"
@@ -309,6 +311,74 @@ TEST_F(WaterInAnyView, IsThePictureOfAPlainOrthographicOne) {
                          {.depth = GL_DEPTH_COMPONENT32F, .zeroToOne = true, .reversed = reversed, .camera = zeroToOne(reversed)}),
                     plain, 0.0015, 0.005);
     }
+}
+
+// Two worlds in one picture: each as if it were alone, where they do not cover each other.
+TEST_F(WaterInAnyView, ShowsTwoWorlds) {
+    std::array<std::unique_ptr<FluidWorld>, 2> worlds;
+    for (size_t k = 0; k < 2; ++k) {
+        FluidParams params = HostScene::water();
+        params.box = {vec3(k == 0 ? -0.1F : 0.65F, 0.0F, 0.2F), vec3(k == 0 ? 0.35F : 1.1F, 0.6F, 0.7F)};
+        params.blocks = {{params.box.min, vec3(params.box.max.x, 0.3F, params.box.max.z), vec3(0.0F)}};
+        auto world = FluidWorld::create(*device_, params, {}, {});
+        ASSERT_TRUE(world) << world.error().message;
+        worlds[k] = std::move(*world);
+        worlds[k]->step({}, 1.0 / 60);
+    }
+    const auto picture = [&](bool first, bool second) {
+        const HostScene host(kWidth, kHeight);
+        const gpu::HostState scope;
+        for (size_t k = 0; k < 2; ++k)
+            if (k == 0 ? first : second) {
+                const Status drawn = renderer_->draw(scope, host.view(), HostScene::viewOf(*worlds[k]), {}, host.target());
+                EXPECT_TRUE(drawn) << drawn.error().message;
+            }
+        return host.pixels();
+    };
+    const std::vector<vec4> none = picture(false, false), left = picture(true, false), right = picture(false, true),
+                            both = picture(true, true);
+    size_t ofLeft = 0, ofRight = 0, shared = 0;
+    for (size_t k = 0; k < none.size(); ++k) {
+        const bool inLeft = left[k] != none[k], inRight = right[k] != none[k];
+        ofLeft += inLeft ? 1 : 0;
+        ofRight += inRight ? 1 : 0;
+        shared += inLeft && inRight ? 1 : 0;
+        if (inLeft && !inRight) EXPECT_EQ(both[k], left[k]);
+        // The second reflects and refracts the first, as it does the rest of the picture.
+        if (!inLeft && !inRight) EXPECT_EQ(both[k], none[k]);
+    }
+    EXPECT_GT(ofLeft, none.size() / 30);
+    EXPECT_GT(ofRight, none.size() / 30);
+    EXPECT_LT(shared, none.size() / 100);
+}
+
+// Without a depth buffer nothing hides the water: the picture is the one of a depth buffer that was cleared.
+TEST_F(WaterInAnyView, NeedsNoDepthBuffer) {
+    const HostScene with(kWidth, kHeight), without(kWidth, kHeight);
+    glClearNamedFramebufferfv(with.target().framebuffer, GL_DEPTH, 0, std::array<float, 1>{1.0F}.data());
+    glNamedFramebufferRenderbuffer(without.target().framebuffer, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, 0);
+    for (const HostScene* host : {&with, &without}) {
+        const Status drawn = renderer_->draw(host->view(), HostScene::viewOf(*world_), {}, host->target());
+        EXPECT_TRUE(drawn) << drawn.error().message;
+    }
+    EXPECT_EQ(with.pixels(), without.pixels());
+}
+
+// A target of another size, and the first size again.
+TEST_F(WaterInAnyView, FollowsAResize) {
+    const auto picture = [&](WaterRenderer& renderer, int width, int height) {
+        const HostScene host(width, height);
+        const Status drawn = renderer.draw(host.view(), HostScene::viewOf(*world_), {}, host.target());
+        EXPECT_TRUE(drawn) << drawn.error().message;
+        return host.pixels();
+    };
+    const std::vector<vec4> large = picture(*renderer_, kWidth, kHeight);
+    for (const auto& [width, height] : {std::pair(64, 48), std::pair(1, 1), std::pair(333, 101)}) {
+        auto fresh = WaterRenderer::create({});
+        ASSERT_TRUE(fresh);
+        EXPECT_EQ(picture(*renderer_, width, height), picture(**fresh, width, height)) << width << " x " << height;
+    }
+    EXPECT_EQ(picture(*renderer_, kWidth, kHeight), large);
 }
 
 // What cannot be drawn is refused in one sentence that names the remedy.

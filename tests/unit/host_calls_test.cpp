@@ -7,16 +7,13 @@
 #include <optional>
 
 #include "engine/app/context_egl.h"
+#include "engine/app/gl_count.h"
 #include "fluid/capi/rivulet.h"
-#include "tests/unit/gl_count.h"
 #include "tests/unit/host_fixture.h"
 
 namespace rivulet::host_calls_test {
 namespace {
 
-using testing::countingFind;
-using testing::GlCalls;
-using testing::glCallsOf;
 using testing::HostScene;
 
 constexpr const char* kScene = R"({"fluid": {"spacing": 0.04, "blocks": [{"min": [0.1, 0, 0.2], "max": [0.9, 0.4, 0.8]}]}})";
@@ -117,6 +114,14 @@ TEST_F(CallsOfAHost, ASecondEyeBringsNothingOver) {
     const GlCalls second = glCallsOf([&] { draw(worlds_[0], right, 0.03F); });
     EXPECT_EQ(copies(second), 0U) << second.text();
     EXPECT_LT(second.all(), 600U) << second.text();
+    // It sees what it would see alone: another look, here that of the buffers, brings all of them over again.
+    const HostScene eye(160, 120), alone(160, 120);
+    EXPECT_EQ(copies(glCallsOf([&] { draw(worlds_[0], eye, 0.03F); })), 0U);
+    rivulet_buffers buffers{};
+    buffers.size = sizeof buffers;
+    ASSERT_EQ(rivulet_world_buffers(worlds_[0], &buffers, &why_), RIVULET_OK) << why_.message;
+    EXPECT_GT(copies(glCallsOf([&] { draw(worlds_[0], alone, 0.03F); })), 0U);
+    EXPECT_EQ(eye.pixels(), alone.pixels());
     // Another world, and this one after a step, are brought over.
     EXPECT_GT(copies(glCallsOf([&] { draw(worlds_[1], right); })), 0U);
     step(worlds_[0]);

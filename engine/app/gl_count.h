@@ -7,7 +7,7 @@
 
 #include "engine/gpu/load.h"
 
-namespace rivulet::testing {
+namespace rivulet {
 
 // As eglGetProcAddress, of functions that count.
 gpu::FunctionPointer countingFind(const char* name);
@@ -20,13 +20,8 @@ struct GlCalls {
     std::string text() const;                       // the most frequent first, for a person
 };
 // The calls of `work`.
-template <class Work>
-GlCalls glCallsOf(const Work& work);
-
-// Parts of it.
 void startGlCount();
 GlCalls glCount();
-
 template <class Work>
 GlCalls glCallsOf(const Work& work) {
     startGlCount();
@@ -34,4 +29,4 @@ GlCalls glCallsOf(const Work& work) {
     return glCount();
 }
 
-}  // namespace rivulet::testing
+}  // namespace rivulet

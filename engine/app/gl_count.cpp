@@ -1,4 +1,4 @@
-#include "tests/unit/gl_count.h"
+#include "engine/app/gl_count.h"
 
 #include <EGL/egl.h>
 #include <fmt/format.h>
@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
-namespace rivulet::testing {
+namespace rivulet {
 namespace {
 
-constexpr size_t kMost = 2048;
-std::array<std::atomic<size_t>, kMost> counts;
+constexpr size_t kMostFunctions = 2048;
+std::array<std::atomic<size_t>, kMostFunctions> glCounts;
 
 // A function that counts, of the same signature.
 template <size_t Id, class Pointer>
@@ -24,7 +24,7 @@ template <size_t Id, class R, class... A>
 struct Counting<Id, R (*)(A...)> {
     static inline R (*real)(A...) = nullptr;
     static R call(A... a) {
-        ++counts[Id];
+        ++glCounts[Id];
         return real(a...);
     }
     static gpu::FunctionPointer wrap(gpu::FunctionPointer found) {
@@ -33,34 +33,35 @@ struct Counting<Id, R (*)(A...)> {
     }
 };
 
-struct Row {
+struct CountedRow {
     const char* name;
     gpu::FunctionPointer (*wrap)(gpu::FunctionPointer);
 };
-constexpr size_t kFirst = __COUNTER__ + 1;
-const Row kRows[] = {
-#define COUNTED(name) {#name, Counting<__COUNTER__ - kFirst, decltype(::name)>::wrap},
+constexpr size_t kFirstCounter = __COUNTER__ + 1;
+const CountedRow kCounted[] = {
+#define COUNTED(name) {#name, Counting<__COUNTER__ - kFirstCounter, decltype(::name)>::wrap},
 #include "gl_functions.inc"
 #undef COUNTED
 };
-static_assert(std::size(kRows) < kMost);
+static_assert(std::size(kCounted) < kMostFunctions);
 
 }  // namespace
 
 gpu::FunctionPointer countingFind(const char* name) {
     const gpu::FunctionPointer found = eglGetProcAddress(name);
-    const auto row = std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) { return std::string_view(r.name) == name; });
-    return row == std::end(kRows) ? found : row->wrap(found);
+    const auto row =
+        std::find_if(std::begin(kCounted), std::end(kCounted), [&](const CountedRow& r) { return std::string_view(r.name) == name; });
+    return row == std::end(kCounted) ? found : row->wrap(found);
 }
 
 void startGlCount() {
-    for (std::atomic<size_t>& count : counts) count = 0;
+    for (std::atomic<size_t>& count : glCounts) count = 0;
 }
 
 GlCalls glCount() {
     GlCalls calls;
-    for (size_t k = 0; k < std::size(kRows); ++k)
-        if (counts[k] > 0) calls.byName[kRows[k].name] = counts[k];
+    for (size_t k = 0; k < std::size(kCounted); ++k)
+        if (glCounts[k] > 0) calls.byName[kCounted[k].name] = glCounts[k];
     return calls;
 }
 
@@ -84,4 +85,4 @@ std::string GlCalls::text() const {
     return out;
 }
 
-}  // namespace rivulet::testing
+}  // namespace rivulet

@@ -40,7 +40,7 @@ struct CountedRow {
 constexpr size_t kFirstCounter = __COUNTER__ + 1;
 const CountedRow kCounted[] = {
 #define COUNTED(name) {#name, Counting<__COUNTER__ - kFirstCounter, decltype(::name)>::wrap},
-#include "gl_functions.inc"
+#include <gl_functions.inc>  // made by CMakeLists.txt
 #undef COUNTED
 };
 static_assert(std::size(kCounted) < kMostFunctions);

@@ -4,7 +4,7 @@ namespace rivulet::gpu {
 
 namespace {
 constexpr GLsizei kStageUnits = 16, kBindings = 8;  // what GL guarantees a stage
-constexpr GLuint kColours = 2;                 // as PassState
+constexpr GLuint kColours = 2;                      // as PassState
 }  // namespace
 
 StateScope::StateScope() {

@@ -56,7 +56,8 @@ Status run(GLFWwindow* window, int frames, const char* picture, bool dry) {
             if (Status stepped = (*world)->lastStep(); !stepped) return stepped;
             auto fluid = upload.view(**world, {});
             if (!fluid) return fluid.error();
-            if (Status drawn = dry ? ok() : (*water)->draw(view, *fluid, {}, {.width = kWidth, .height = kHeight}); !drawn) return drawn;
+            if (Status drawn = dry ? ok() : (*water)->draw(keep, view, *fluid, {}, {.width = kWidth, .height = kHeight}); !drawn)
+                return drawn;
         }
         if (frame + 1 == frames && picture != nullptr) {
             std::vector<char> pixels(3 * kWidth * kHeight);

@@ -1,16 +1,20 @@
 // The cost of water in a host's frame: saving and restoring its OpenGL state, uploading the particles, drawing into its framebuffer.
+#include <EGL/egl.h>
 #include <fmt/format.h>
 #include <rivulet_glad/gl.h>
 
+#include <array>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <optional>
 
 #include "demos/rivulet/bench_cases.h"
 #include "engine/app/context_egl.h"
+#include "engine/app/gl_count.h"
 #include "engine/core/timeline.h"
 #include "engine/gpu/framebuffer.h"
 #include "engine/gpu/host_state.h"
+#include "engine/gpu/load.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/render/water_renderer.h"
@@ -78,6 +82,62 @@ Status benchAsleep(const BenchContext& context, const gpu::Framebuffer& host, co
     return ok();
 }
 
+// One and two eyes, one and two worlds, each frame in one scope of HostState, as a host draws it; then the same in calls of OpenGL.
+Status benchFrames(const BenchContext& context, const gpu::Framebuffer& host, const FrameView& view,
+                   const std::array<FluidWorld*, 2>& worlds, WaterRenderer& water) {
+    const Result<FluidLook> look = fluidLookOf({}, {});
+    if (!look) return look.error();
+    std::array<FluidUpload, 2> uploads;
+    FrameView other = view;
+    other.view[3].x += 0.06F;
+    Status wrong = ok();
+    const auto frame = [&](size_t of, int eyes, gpu::HostState::Saves saves) {
+        const gpu::HostState scope(saves);
+        for (size_t k = 0; k < of; ++k) {
+            worlds[k]->step({}, 1.0e-6);  // so that its particles are brought over
+            for (int eye = 0; eye < eyes; ++eye) {
+                Result<FluidView> fluid = uploads[k].view(*worlds[k], {});
+                if (!fluid) wrong = fluid.error();
+                if (!fluid) return;
+                const HostTarget target{.framebuffer = host.name(), .width = kWidth, .height = kHeight};
+                if (Status drawn = water.draw(scope, eye == 0 ? view : other, *fluid, *look, target); !drawn) wrong = drawn;
+            }
+        }
+    };
+    const struct {
+        const char* name;
+        size_t worlds;
+        int eyes;
+        gpu::HostState::Saves saves;
+    } rows[] = {{"one eye", 1, 1, gpu::HostState::rivulets},
+                {"one eye, state not asked for", 1, 1, gpu::HostState::nothing},
+                {"two eyes", 1, 2, gpu::HostState::rivulets},
+                {"two worlds", 2, 1, gpu::HostState::rivulets}};
+    for (const auto& row : rows) {
+        const Spread drawn = repeat(context, [&] {
+            glFinish();
+            const double start = hostSeconds();
+            frame(row.worlds, row.eyes, row.saves);
+            glFinish();
+            return 1000 * (hostSeconds() - start);
+        });
+        if (!wrong) return wrong;
+        context.report({.name = fmt::format("host: a frame of {}, 640x360", row.name), .unit = "ms", .value = drawn, .passes = {}});
+    }
+    if (Status counts = gpu::load(countingFind); !counts) return counts;
+    for (const auto& row : rows) {
+        frame(row.worlds, row.eyes, row.saves);
+        glFinish();
+        const GlCalls calls = glCallsOf([&] { frame(row.worlds, row.eyes, row.saves); });
+        for (const auto& [what, count] : {std::pair("calls of OpenGL", calls.all()), std::pair("questions", calls.questions())})
+            context.report({.name = fmt::format("host: a frame of {}, {}", row.name, what),
+                            .unit = "calls",
+                            .value = spreadOf({static_cast<double>(count)}),
+                            .passes = {}});
+    }
+    return gpu::load(eglGetProcAddress);
+}
+
 }  // namespace
 
 Status benchHost(const BenchContext& context) {
@@ -110,13 +170,17 @@ Status benchHost(const BenchContext& context) {
     view.nearPlane = 0.1F;
     view.farPlane = 20.0F;
 
-    const Spread kept = repeat(context, [&] {
-        const double start = hostSeconds();
-        for (int k = 0; k < kScopes; ++k) const gpu::HostState keep;
-        glFinish();
-        return 1000 * (hostSeconds() - start) / kScopes;
-    });
-    context.report({.name = "host: OpenGL state saved and restored", .unit = "ms", .value = kept, .passes = {}});
+    for (const auto& [name, saves] : {std::pair("host: OpenGL state saved and restored", gpu::HostState::rivulets),
+                                      std::pair("host: all OpenGL state saved and restored", gpu::HostState::everything),
+                                      std::pair("host: OpenGL state made plain", gpu::HostState::nothing)}) {
+        const Spread kept = repeat(context, [&, saves = saves] {
+            const double start = hostSeconds();
+            for (int k = 0; k < kScopes; ++k) const gpu::HostState keep(saves);
+            glFinish();
+            return 1000 * (hostSeconds() - start) / kScopes;
+        });
+        context.report({.name = name, .unit = "ms", .value = kept, .passes = {}});
+    }
     for (const bool fast : {false, true}) {
         FluidLookParams look;
         look.quality = fast ? "fast" : "fine";
@@ -149,6 +213,10 @@ Status benchHost(const BenchContext& context) {
                         .value = drawn,
                         .passes = {{"upload", uploaded}}});
     }
+    auto second = FluidWorld::create(*cpu, params, {}, context.log);
+    if (!second) return second.error();
+    for (int k = 0; k < 15; ++k) (*second)->step({}, 1.0 / 60);
+    if (Status done = benchFrames(context, host, view, {world->get(), second->get()}, **water); !done) return done;
     return benchAsleep(context, host, view, *cpu, **water);
 }
 

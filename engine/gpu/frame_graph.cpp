@@ -14,6 +14,7 @@
 #include "engine/core/assert.h"
 #include "engine/core/readable_bytes.h"
 #include "engine/gpu/gl_error.h"
+#include "engine/gpu/pass_state.h"
 #include "engine/gpu/timer.h"
 #include "engine/gpu/vertex_array.h"
 
@@ -55,42 +56,6 @@ GLbitfield barrierFor(Usage usage, bool texture) {
     ASSERT(false, "pass a valid Usage");
 }
 
-// Resets the state that a pass may set to OpenGL's defaults, and framebuffer and viewport to those of the host.
-class StateScope {
-  public:
-    StateScope() {
-        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_);
-        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_);
-        glGetIntegerv(GL_VIEWPORT, viewport_);
-    }
-    void reset() const {
-        glUseProgram(0);
-        glBindVertexArray(0);
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(draw_));
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_));
-        glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
-        for (const GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_DEPTH_CLAMP, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST,
-                                        GL_PROGRAM_POINT_SIZE, GL_POLYGON_OFFSET_FILL, GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD})
-            glDisable(capability);
-        glBlendFunc(GL_ONE, GL_ZERO);
-        glBlendEquation(GL_FUNC_ADD);
-        glDepthFunc(GL_LESS);
-        glDepthMask(GL_TRUE);
-        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glCullFace(GL_BACK);
-        glFrontFace(GL_CCW);
-        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-        glBindTextures(0, kUnits, nullptr);
-        glBindSamplers(0, kUnits, nullptr);
-        glBindImageTextures(0, kBindings, nullptr);
-        glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, kBindings, nullptr);
-    }
-
-  private:
-    static constexpr GLsizei kUnits = 16, kBindings = 8;  // what GL guarantees a stage
-    GLint draw_ = 0, read_ = 0, viewport_[4] = {0, 0, 0, 0};
-};
-
 size_t roundedBytes(size_t bytes) { return (std::max<size_t>(bytes, 1) + 255) / 256 * 256; }
 
 }  // namespace
@@ -105,10 +70,18 @@ struct TransientPool::Impl {
     };
     using TextureItem = Item<Texture, TextureDesc>;
     using BufferItem = Item<Buffer, size_t>;
+    struct FramebufferItem {
+        std::vector<std::weak_ptr<const void>> of;  // colours, then depth; empty: none there
+        Framebuffer framebuffer;
+        uint64_t lastUsed = 0;
+        bool isOf(std::span<const Attachment> colours, const Attachment& depth) const;
+        bool gone() const;  // one of its textures was deleted
+    };
 
     // Items stay where they are: graphs point at them.
     std::vector<std::unique_ptr<TextureItem>> textures;
     std::vector<std::unique_ptr<BufferItem>> buffers;
+    std::vector<std::unique_ptr<FramebufferItem>> framebuffers;
     uint64_t frame = 0;
     VertexArray noAttributes;
 
@@ -162,6 +135,22 @@ struct TransientPool::Impl {
         });
     }
 
+    const Framebuffer& framebufferOf(std::span<const Attachment> colours, const Attachment& depth) {
+        for (const auto& item : framebuffers)
+            if (item->isOf(colours, depth)) {
+                item->lastUsed = frame;
+                return item->framebuffer;
+            }
+        auto made = std::make_unique<FramebufferItem>();
+        made->framebuffer = Framebuffer(colours, depth);
+        made->lastUsed = frame;
+        const auto lifeOf = [](const Attachment& a) { return a.texture != nullptr ? a.texture->life() : std::weak_ptr<const void>(); };
+        for (const Attachment& colour : colours) made->of.push_back(lifeOf(colour));
+        made->of.push_back(lifeOf(depth));
+        framebuffers.push_back(std::move(made));
+        return framebuffers.back()->framebuffer;
+    }
+
     void beginFrame() {
         ++frame;
         const auto old = [&](const auto& item) {
@@ -170,6 +159,7 @@ struct TransientPool::Impl {
         };
         std::erase_if(textures, old);
         std::erase_if(buffers, old);
+        std::erase_if(framebuffers, [&](const auto& item) { return item->gone() || item->lastUsed + kKeepFrames < frame; });
         if (!timed.empty() && timed.front().frame + kTimesLate <= frame) collectTimes();
     }
 
@@ -198,6 +188,21 @@ struct TransientPool::Impl {
         return static_cast<size_t>(row - rows.begin());
     }
 };
+
+bool TransientPool::Impl::FramebufferItem::isOf(std::span<const Attachment> colours, const Attachment& depth) const {
+    if (of.size() != colours.size() + 1) return false;
+    const auto same = [](const std::weak_ptr<const void>& kept, const Attachment& a) {
+        return kept.lock() == (a.texture != nullptr ? a.texture->life().lock() : nullptr);
+    };
+    return !gone() &&
+           std::equal(colours.begin(), colours.end(), of.begin(), [&](const Attachment& a, const auto& kept) { return same(kept, a); }) &&
+           same(of.back(), depth);
+}
+bool TransientPool::Impl::FramebufferItem::gone() const {
+    const std::weak_ptr<const void> none;
+    return std::any_of(of.begin(), of.end(),
+                       [&](const auto& kept) { return kept.expired() && (kept.owner_before(none) || none.owner_before(kept)); });
+}
 
 TransientPool::TransientPool() : impl_(std::make_unique<Impl>()) {}
 TransientPool::TransientPool(TransientPool&&) noexcept = default;
@@ -246,6 +251,7 @@ struct FrameGraph::Impl {
     std::vector<Resource> resources;
     std::vector<Pass> passes;
     bool executed = false;
+    StateScope* state = nullptr;  // within execute()
 
     uint32_t add(Resource resource) {
         ASSERT(!executed, "build a new FrameGraph for the next frame");
@@ -419,36 +425,43 @@ Status FrameGraph::execute() {
     const Status lent = impl_->lendTransients();
     if (!lent) return lent.error();
 
-    // A host may have opened the maximum number of debug groups: a pop without a successful push would close one of the host's.
+    // Passes are named for a debugger that listens. A host may have opened the maximum number of debug groups: a pop without a successful
+    // push would close one of the host's.
     GLint groups = 0, mostGroups = 0;
-    glGetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &groups);
-    glGetIntegerv(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &mostGroups);
+    if (glIsEnabled(GL_DEBUG_OUTPUT) == GL_TRUE) {
+        glGetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &groups);
+        glGetIntegerv(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &mostGroups);
+    }
     const bool named = groups < mostGroups;
     pool.timed.push_back({pool.frame, 0, {}});
-    const StateScope state;
+    StateScope state;
+    impl_->state = &state;
     Impl::Hazards hazards;
-    for (size_t p = 0; p < impl_->passes.size(); ++p) {
+    bool timing = false, lacksMemory = false;
+    for (size_t p = 0; p < impl_->passes.size() && !lacksMemory; ++p) {
         Impl::Pass& pass = impl_->passes[p];
         const size_t row = pool.timeRow(pass.name, pass.needed);
         if (!pass.needed) continue;
         if (named) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(pass.name.size()), pass.name.c_str());
-        pool.timer.begin(pool.frame << 16U | row);
+        const uint64_t tag = pool.frame << 16U | row;
+        timing ? pool.timer.next(tag) : pool.timer.begin(tag);
+        timing = true;
+        ++pool.timed.back().awaited;
         pass.barriers = impl_->placeBarriers(pass, hazards);
-        bool lacksMemory = false;
+        PassContext context(*this, static_cast<uint32_t>(p));
         try {
-            PassContext context(*this, static_cast<uint32_t>(p));
             pass.work(context);
         } catch (const std::bad_alloc&) {
             lacksMemory = true;
         }
-        state.reset();
+        context.stated_ ? state.set({}) : state.reset();
         impl_->noteAccesses(pass, hazards);
-        pool.timer.end();
-        ++pool.timed.back().awaited;
         if (named) glPopDebugGroup();
-        if (lacksMemory && contextLost()) return failed(kContextLost);
-        if (lacksMemory) return noMemory("there is not enough memory to draw the picture: make it smaller, or use fewer particles");
     }
+    if (timing) pool.timer.end();
+    impl_->state = nullptr;
+    if (lacksMemory && contextLost()) return failed(kContextLost);
+    if (lacksMemory) return noMemory("there is not enough memory to draw the picture: make it smaller, or use fewer particles");
     // Makes shader writes visible to all later commands, here or in the host.
     if (std::any_of(hazards.begin(), hazards.end(), [](const auto& h) { return h.second.written; })) glMemoryBarrier(GL_ALL_BARRIER_BITS);
     return ok();
@@ -564,9 +577,14 @@ const Framebuffer& PassContext::drawTo(std::initializer_list<TextureHandle> colo
     };
     std::vector<Attachment> attachments;
     for (const TextureHandle colour : colours) attachments.push_back(attachment(colour));
-    framebuffer_ = Framebuffer(attachments, attachment(depth));
-    framebuffer_.bind();
-    return framebuffer_;
+    const Framebuffer& framebuffer = graph_.impl_->pool.framebufferOf(attachments, attachment(depth));
+    framebuffer.bind();
+    return framebuffer;
+}
+
+void PassContext::state(const PassState& state) {
+    stated_ = true;
+    graph_.impl_->state->set(state);
 }
 
 void PassContext::drawFullscreen() const {

@@ -9,7 +9,8 @@
 //     graph.execute();
 //
 // Passes run in the order they were added. A write to a handle that was written before adds to its contents (a pass that replaces them
-// clears first); for a transient's first writer they are undefined. After each pass the GL state that passes may set is reset to defaults.
+// clears first); for a transient's first writer they are undefined. After each pass the GL state that passes may set is reset to defaults;
+// what a pass with PassContext::state() has bound stays.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,7 @@
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/frame_graph_description.h"
 #include "engine/gpu/framebuffer.h"
+#include "engine/gpu/pass_state.h"
 #include "engine/gpu/texture.h"
 
 namespace rivulet::gpu {
@@ -97,7 +99,10 @@ class PassContext {
     unsigned buffer(BufferHandle handle) const;  // the GL name
     size_t bytes(BufferHandle handle) const;
 
-    // Binds a framebuffer of these textures (level 0, all layers) and sets the viewport to its size. It is deleted after the pass.
+    // Sets what the pass draws with; it may be called again. Such a pass changes no other state of OpenGL than by this and by drawTo(), but
+    // it may bind what it draws with. It needs no reset of all state afterwards, and so costs fewer calls.
+    void state(const PassState& state);
+    // Binds a framebuffer of these textures (level 0, all layers) and sets the viewport to its size. The pool keeps it.
     const Framebuffer& drawTo(std::initializer_list<TextureHandle> colours, TextureHandle depth = {});
     // One triangle that covers the viewport, from gl_VertexID: no attributes. The program in use draws it.
     void drawFullscreen() const;
@@ -107,7 +112,7 @@ class PassContext {
     PassContext(FrameGraph& graph, uint32_t pass) : graph_(graph), pass_(pass) {}
     FrameGraph& graph_;
     uint32_t pass_;
-    Framebuffer framebuffer_;
+    bool stated_ = false;  // state() was called
 };
 
 class FrameGraph {

@@ -73,7 +73,7 @@ Framebuffer::Framebuffer(const Texture& colour, const Texture* depth) : Framebuf
 
 void Framebuffer::bind() const {
     glBindFramebuffer(GL_FRAMEBUFFER, name());
-    glViewport(0, 0, width_, height_);
+    glViewportIndexedf(0, 0, 0, static_cast<float>(width_), static_cast<float>(height_));  // no other viewport is used
 }
 
 void Framebuffer::clearColour(const vec4& value, int index) const { glClearNamedFramebufferfv(name(), GL_COLOR, index, &value.x); }

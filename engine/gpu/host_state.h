@@ -2,7 +2,7 @@
 //
 //     {
 //         const gpu::HostState keep;   // saves the state and sets OpenGL's defaults, which Rivulet expects
-//         world->step(inputs, seconds);  water->draw(...);
+//         world->step(inputs, seconds);  water->draw(keep, ...);
 //     }                                // the state is restored exactly
 //
 // Needs a current OpenGL 4.5 context, core or compatibility, with its functions loaded (load.h). Scopes may nest. Not saved, because OpenGL
@@ -17,12 +17,28 @@
 
 namespace rivulet::gpu {
 
+// A host's depth convention.
+struct HostDepth {
+    bool zeroToOne = false, upperLeft = false;  // glClipControl: GL_ZERO_TO_ONE, GL_UPPER_LEFT
+    float near = 0, far = 1;                    // glDepthRange
+};
+
 class HostState {
   public:
-    HostState();
+    enum Saves {
+        rivulets,    // all state that Rivulet changes: the first two draw buffers, viewport 0, 2D and buffer textures of the units it uses
+        everything,  // for passes of the host's own (RendererRow), which may change more: all draw buffers, viewports, images and textures
+        // For a host that sets all state it needs itself: no state is asked for but the depth convention. Afterwards state is at OpenGL's
+        // defaults, as of a new context, but: what is bound to framebuffers and viewport 0; programs, vertex arrays, and on texture units 0
+        // to 11, 16 and 24 to 30, on uniform buffers 0 to 3 and on storage buffers 0 to 8, nothing.
+        nothing
+    };
+    explicit HostState(Saves saves = rivulets);
     ~HostState();
     HostState(const HostState&) = delete;
     HostState& operator=(const HostState&) = delete;
+
+    const HostDepth& depth() const;  // of the host
 
   private:
     struct Kept;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <rivulet_glad/gl.h>
 
+#include <algorithm>
 #include <cctype>
 #include <optional>
 #include <utility>
@@ -167,7 +168,7 @@ Result<size_t> Program::reload(std::span<Program* const> programs, const Fits& f
         if (program->name_ && hashOf(*sources) == program->text_) continue;
         Result<Built> built = build(*sources, program->paths_);
         if (!built) return built.error();
-        for (const auto& [uniform, at] : program->locations_)
+        for (const auto& [uniform, known] : program->uniforms_)
             if (!declares(built->declarations, uniform))
                 return failed(fmt::format("{} no longer declares the uniform \"{}\", which the program sets; put it back",
                                           joined(program->paths_), uniform));
@@ -183,7 +184,7 @@ void Program::replaceBy(Built built) {
     text_ = built.text;
     declarations_ = std::move(built.declarations);
     // The names are kept: the next reload must declare every uniform that the program has set.
-    for (auto& [uniform, at] : locations_) at = glGetUniformLocation(name(), uniform.c_str());
+    for (auto& [uniform, known] : uniforms_) known = {.location = glGetUniformLocation(name(), uniform.c_str())};
     localSize_ = uvec3(0);
     if (stageOf(paths_.front()) == GL_COMPUTE_SHADER) {
         GLint size[3] = {0, 0, 0};
@@ -192,41 +193,81 @@ void Program::replaceBy(Built built) {
     }
 }
 
-GLint Program::location(std::string_view uniform) {
-    const auto known = locations_.find(uniform);
-    if (known != locations_.end()) return known->second;
+Program::Uniform& Program::find(std::string_view uniform) {
+    const auto known = uniforms_.find(uniform);
+    if (known != uniforms_.end()) return known->second;
     ASSERT(name_, "create the program before setting its uniforms");
     const std::string text(uniform);
     const GLint found = glGetUniformLocation(name(), text.c_str());
     ASSERT(found >= 0 || declares(declarations_, uniform),
            fmt::format("set a uniform that {} declares; \"{}\" is none", joined(paths_), uniform).c_str());
-    locations_.emplace(text, found);
-    return found;
+    return uniforms_.emplace(text, Uniform{.location = found}).first->second;
 }
 
 void Program::use() const { glUseProgram(name()); }
 
-void Program::set(std::string_view u, float v) { glProgramUniform1f(name(), location(u), v); }
-void Program::set(std::string_view u, int v) { glProgramUniform1i(name(), location(u), v); }
-void Program::set(std::string_view u, unsigned v) { glProgramUniform1ui(name(), location(u), v); }
-void Program::set(std::string_view u, const vec2& v) { glProgramUniform2fv(name(), location(u), 1, &v.x); }
-void Program::set(std::string_view u, const vec3& v) { glProgramUniform3fv(name(), location(u), 1, &v.x); }
-void Program::set(std::string_view u, const vec4& v) { glProgramUniform4fv(name(), location(u), 1, &v.x); }
-void Program::set(std::string_view u, const ivec2& v) { glProgramUniform2iv(name(), location(u), 1, &v.x); }
-void Program::set(std::string_view u, const ivec3& v) { glProgramUniform3iv(name(), location(u), 1, &v.x); }
-void Program::set(std::string_view u, const mat3& v) { glProgramUniformMatrix3fv(name(), location(u), 1, GL_FALSE, &v[0].x); }
-void Program::set(std::string_view u, const mat4& v) { glProgramUniformMatrix4fv(name(), location(u), 1, GL_FALSE, &v[0].x); }
+std::optional<int> Program::changed(std::string_view uniform, std::span<const std::byte> value) {
+    Uniform& known = find(uniform);
+    if (known.location < 0) return std::nullopt;
+    if (value.size() > known.value.size()) return known.location;
+    if (known.bytes == value.size() && std::equal(value.begin(), value.end(), known.value.begin())) return std::nullopt;
+    known.bytes = value.size();
+    std::copy(value.begin(), value.end(), known.value.begin());
+    return known.location;
+}
+
+namespace {
+template <class T>
+std::span<const std::byte> bytesOf(const T& value) {
+    return std::as_bytes(std::span(&value, 1));
+}
+}  // namespace
+
+void Program::set(std::string_view u, float v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform1f(name(), *at, v);
+}
+void Program::set(std::string_view u, int v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform1i(name(), *at, v);
+}
+void Program::set(std::string_view u, unsigned v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform1ui(name(), *at, v);
+}
+void Program::set(std::string_view u, const vec2& v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform2fv(name(), *at, 1, &v.x);
+}
+void Program::set(std::string_view u, const vec3& v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform3fv(name(), *at, 1, &v.x);
+}
+void Program::set(std::string_view u, const vec4& v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform4fv(name(), *at, 1, &v.x);
+}
+void Program::set(std::string_view u, const ivec2& v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform2iv(name(), *at, 1, &v.x);
+}
+void Program::set(std::string_view u, const ivec3& v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniform3iv(name(), *at, 1, &v.x);
+}
+void Program::set(std::string_view u, const mat3& v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniformMatrix3fv(name(), *at, 1, GL_FALSE, &v[0].x);
+}
+void Program::set(std::string_view u, const mat4& v) {
+    if (const auto at = changed(u, bytesOf(v))) glProgramUniformMatrix4fv(name(), *at, 1, GL_FALSE, &v[0].x);
+}
 void Program::set(std::string_view u, std::span<const float> v) {
-    glProgramUniform1fv(name(), location(u), static_cast<GLsizei>(v.size()), v.data());
+    if (const auto at = changed(u, std::as_bytes(v))) glProgramUniform1fv(name(), *at, static_cast<GLsizei>(v.size()), v.data());
 }
 void Program::set(std::string_view u, std::span<const vec3> v) {
-    if (!v.empty()) glProgramUniform3fv(name(), location(u), static_cast<GLsizei>(v.size()), &v[0].x);
+    if (v.empty()) return;
+    if (const auto at = changed(u, std::as_bytes(v))) glProgramUniform3fv(name(), *at, static_cast<GLsizei>(v.size()), &v[0].x);
 }
 void Program::set(std::string_view u, std::span<const vec4> v) {
-    if (!v.empty()) glProgramUniform4fv(name(), location(u), static_cast<GLsizei>(v.size()), &v[0].x);
+    if (v.empty()) return;
+    if (const auto at = changed(u, std::as_bytes(v))) glProgramUniform4fv(name(), *at, static_cast<GLsizei>(v.size()), &v[0].x);
 }
 void Program::set(std::string_view u, std::span<const mat4> v) {
-    if (!v.empty()) glProgramUniformMatrix4fv(name(), location(u), static_cast<GLsizei>(v.size()), GL_FALSE, &v[0][0].x);
+    if (v.empty()) return;
+    if (const auto at = changed(u, std::as_bytes(v)))
+        glProgramUniformMatrix4fv(name(), *at, static_cast<GLsizei>(v.size()), GL_FALSE, &v[0][0].x);
 }
 
 void Program::texture(std::string_view sampler, int unit, const Texture& t) {

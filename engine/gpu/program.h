@@ -6,8 +6,11 @@
 // Shader files have no #version line (450 core is put in front) and may #include "shaders/...".
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,8 +43,8 @@ class Program {
     explicit operator bool() const { return static_cast<bool>(name_); }
     void use() const;
 
-    // use() is not needed. A uniform that the compiler optimised away is ignored; one that no shader declares is a programming error
-    // (ASSERT).
+    // use() is not needed, and a value that is already set costs no call of OpenGL. A uniform that the compiler optimised away is ignored;
+    // one that no shader declares is a programming error (ASSERT).
     void set(std::string_view uniform, float v);
     void set(std::string_view uniform, int v);  // also bool, and a sampler's unit
     void set(std::string_view uniform, unsigned v);
@@ -69,16 +72,24 @@ class Program {
                                                   const std::vector<Define>& defines);
     static Result<Built> build(const std::vector<KernelSource>& sources, const std::vector<std::string>& paths);
     void replaceBy(Built built);
-    int location(std::string_view uniform);
+    // What a uniform was last set to; longer values are set again each time.
+    struct Uniform {
+        int location = -1;  // -1: optimised away
+        size_t bytes = 0;     // 0: not known
+        std::array<std::byte, sizeof(mat4)> value{};
+    };
+    Uniform& find(std::string_view uniform);
+    // The location, if the uniform is to be set: where it is used, and has another value.
+    std::optional<int> changed(std::string_view uniform, std::span<const std::byte> value);
 
     ShaderFiles files_;
     std::vector<std::string> paths_;
     std::vector<Define> defines_;
     ProgramName name_;
-    size_t text_ = 0;                                    // a hash of the compiled text, to detect changed files
-    std::string declarations_;                           // all uniform declarations, to distinguish "optimised away" from "unknown"
-    std::map<std::string, int, std::less<>> locations_;  // -1: optimised away
-    uvec3 localSize_{0};                                 // of a compute program
+    size_t text_ = 0;           // a hash of the compiled text, to detect changed files
+    std::string declarations_;  // all uniform declarations, to distinguish "optimised away" from "unknown"
+    std::map<std::string, Uniform, std::less<>> uniforms_;
+    uvec3 localSize_{0};  // of a compute program
 };
 
 }  // namespace rivulet::gpu

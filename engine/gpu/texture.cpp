@@ -156,6 +156,7 @@ Result<Texture> Texture::create(const TextureDesc& asked) {
     GLuint name = 0;
     glCreateTextures(targetOf(desc.shape), 1, &name);
     texture.name_ = TextureName(name);
+    texture.life_ = std::make_shared<const char>();
     if (desc.shape == TextureShape::array)
         glTextureStorage3D(name, desc.mips, format.internal, desc.width, desc.height, desc.layers);
     else

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 
 #include "engine/core/math.h"
@@ -72,7 +73,8 @@ class Texture {
     static Result<Texture> create(const TextureDesc& desc);
 
     unsigned name() const { return name_.name(); }
-    const TextureDesc& desc() const { return desc_; }  // settled
+    const TextureDesc& desc() const { return desc_; }         // settled
+    std::weak_ptr<const void> life() const { return life_; }  // expires when the texture is deleted; names are given again
     int width(int mip = 0) const;
     int height(int mip = 0) const;
     explicit operator bool() const { return static_cast<bool>(name_); }
@@ -92,6 +94,7 @@ class Texture {
   private:
     TextureName name_;
     TextureDesc desc_;
+    std::shared_ptr<const char> life_;
 };
 
 // A sampler object: while it is bound to a unit, it overrides the texture's own sampling.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "engine/gpu/gl_object.h"
@@ -16,6 +17,7 @@ class Timer {
     // While kMaxPending spans have not been collected, new ones are not measured.
     void begin(uint64_t tag);
     void end();
+    void next(uint64_t tag);  // end(), and begin() at the same moment
 
     struct Times {
         double begin = 0, end = 0;  // s, of hostSeconds()
@@ -29,11 +31,19 @@ class Timer {
     static constexpr size_t kMaxPending = 4096;
 
   private:
+    struct Mark {
+        QueryName query;
+        uint64_t ns = 0;
+        bool read = false;
+    };
     struct Span {
         uint64_t tag = 0;
-        QueryName begin, end;  // none: untimed
+        std::shared_ptr<Mark> begin, end;  // null: untimed
     };
-    QueryName query();
+    std::shared_ptr<Mark> mark();
+    void open(uint64_t tag, std::shared_ptr<Mark> at);
+    void close(std::shared_ptr<Mark> at);
+    uint64_t timeOf(std::shared_ptr<Mark>& mark);
 
     std::vector<Span> open_;
     std::deque<Span> pending_;

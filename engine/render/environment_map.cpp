@@ -113,6 +113,14 @@ std::string keyOf(const HdrImage& image) {
     return fmt::format("{}, {} x {}, {}", kMaker, image.width, image.height, hashOf(std::as_bytes(std::span(image.texels))));
 }
 
+// Must be changed with every change of makeSky().
+constexpr std::string_view kSkyMaker = "sky 1";
+std::string keyOf(const SkyLook& sky) {
+    std::string key = fmt::format("{}, {}, {}", kMaker, kSkyMaker, sky.clouds);
+    for (const vec3& v : {sky.sun, sky.sunlight, sky.horizon, sky.zenith, sky.ground}) key += fmt::format(", {} {} {}", v.x, v.y, v.z);
+    return key;
+}
+
 // The cached bytes: width, mips and diffuse coefficients, one after the other.
 std::vector<std::byte> bytesOf(const Environment& made) {
     std::vector<std::byte> bytes;
@@ -146,13 +154,25 @@ std::optional<Environment> environmentOf(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-Environment cachedEnvironment(const HdrImage& from, const DiskCache& cache) {
-    const std::string key = keyOf(from);
+namespace {
+
+template <class Make>
+Environment cached(const std::string& key, const DiskCache& cache, const Make& make) {
     if (const auto kept = cache.find(key))
         if (std::optional<Environment> made = environmentOf(*kept)) return std::move(*made);
-    Environment made = prefiltered(from);
+    Environment made = prefiltered(make());
     cache.keep(key, bytesOf(made));
     return made;
+}
+
+}  // namespace
+
+Environment cachedEnvironment(const HdrImage& from, const DiskCache& cache) {
+    return cached(keyOf(from), cache, [&]() -> const HdrImage& { return from; });
+}
+
+Environment cachedEnvironment(const SkyLook& sky, const DiskCache& cache) {
+    return cached(keyOf(sky), cache, [&] { return makeSky(sky); });
 }
 
 Result<gpu::Texture> makeEnvironmentMap(const Environment& from) {

@@ -7,6 +7,7 @@
 #include "engine/compute/disk_cache.h"
 #include "engine/gpu/texture.h"
 #include "engine/material/image.h"
+#include "engine/render/made_sky.h"
 
 namespace rivulet {
 
@@ -23,6 +24,8 @@ struct Environment {
 Environment prefiltered(const HdrImage& surroundings);
 // The same result from the cache; if it is not there, it is computed and stored.
 Environment cachedEnvironment(const HdrImage& surroundings, const DiskCache& cache);
+// The same of makeSky(sky), which is made only if the result is not in the cache.
+Environment cachedEnvironment(const SkyLook& sky, const DiskCache& cache);
 
 // The mips as an rgba16f texture. Error (failed): out of GPU memory.
 Result<gpu::Texture> makeEnvironmentMap(const Environment& from);

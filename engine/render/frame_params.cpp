@@ -77,7 +77,8 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
     }
     f.cameraPos = vec4(view.cameraPosWorld, static_cast<float>(view.time));
     f.viewport = vec4(width, height, 1.0F / width, 1.0F / height);
-    f.ray = vec4(2.0F / (width * p[0][0]), 2.0F / (height * p[1][1]), (p[2][0] - 1.0F) / p[0][0], (p[2][1] - 1.0F) / p[1][1]);
+    f.ray = vec4(2.0F / (width * p[0][0]), 2.0F / (height * p[1][1]), (p[2][0] - p[3][0] - 1.0F) / p[0][0],
+                 (p[2][1] - p[3][1] - 1.0F) / p[1][1]);
     f.planes = vec4(view.nearPlane, view.farPlane, p[2][2], p[3][2]);
     f.lightDir = vec4(glm::normalize(view.lightDirWorld), 0.0F);
     f.lightColour = vec4(view.lightColour, 0.0F);

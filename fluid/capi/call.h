@@ -54,12 +54,16 @@ inline Status ready(rivulet_context& context, Needs needs) {
     return ok();
 }
 
+inline gpu::HostState::Saves savesOf(const rivulet_context& context) {
+    return context.plainState ? gpu::HostState::nothing : gpu::HostState::rivulets;
+}
+
 // One call: the context is busy, loops run on its jobs and, if the call needs OpenGL, the host's OpenGL state is restored at the end.
 // OpenGL objects of a context that has ended are dropped.
 class CallScope {
   public:
     CallScope(rivulet_context& context, Needs needs) : context_(context), jobs_(context.jobs) {
-        if (needsGl(context, needs)) context_.hostGl.emplace();  // may throw
+        if (needsGl(context, needs)) context_.hostGl.emplace(savesOf(context));  // may throw
         if (context_.hostGl) context_.drawing = true;
         if (context.lost) lost_.emplace();
         context_.busy = true;

@@ -84,6 +84,7 @@ Result<CpuOptions> cpuOptionsOf(const rivulet_context_options& o, rivulet_contex
 Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     c.hostLog.function = o.log;
     c.hostLog.user = o.log_user;
+    c.plainState = o.plain_state != 0;
     if (o.log != nullptr)
         c.log.sink = [&c](LogLevel level, std::string_view text) { c.hostLog.add(static_cast<rivulet_level>(level), messageLine(text)); };
     for (const auto& [name, values] :

@@ -7,7 +7,6 @@
 #include "fluid/capi/convert.h"
 #include "fluid/capi/drawing.h"
 #include "fluid/capi/versioned.h"
-#include "fluid/render/host_picture.h"
 #include "fluid/render/renderers.h"
 
 namespace rivulet::capi {
@@ -17,8 +16,8 @@ Status drawable(const rivulet_context& context) {
     return badInput("the context has no OpenGL: set rivulet_context_options.find");
 }
 
-Status drawWater(rivulet_context& context, const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
-                 const rivulet_target* target, const std::function<Result<FluidView>()>& fluid) {
+Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
+                            const rivulet_target* target) {
     const Result<rivulet_view> viewing = readStruct(view, "rivulet_view", "view");
     if (!viewing) return viewing.error();
     const Result<rivulet_target> drawing = readStruct(target, "rivulet_target", "target");
@@ -34,28 +33,25 @@ Status drawWater(rivulet_context& context, const FluidLookParams& params, const 
         return badInput(fmt::format("view.light_direction or view.light_colour is not finite, or beyond {}", kBrightest));
     Result<FluidLook> look = fluidLookOf(params, liquid);
     if (!look) return look.error();
-    const RendererRow* row = renderers().find(params.renderer);
-    FrameView frame;
+    WaterDraw draw{.view = {}, .look = std::move(*look), .target = {}, .row = renderers().find(params.renderer)};
+    FrameView& frame = draw.view;
     frame.view = matrixOf(v.view);
     frame.projection = matrixOf(v.projection);
-    frame.cameraPosWorld = vec3(glm::inverse(frame.view)[3]);
     frame.nearPlane = v.near_plane;
     frame.farPlane = v.far_plane;
+    if (v.units_per_metre != 0) frame.unitsPerMetre = v.units_per_metre;
     frame.width = t.width;
     frame.height = t.height;
     if (isSet(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);
     frame.lightDirWorld = glm::normalize(frame.lightDirWorld);
     frame.lightColour = isSet(v.light_colour) ? vectorOf(v.light_colour) : vec3(1.0F);
-    const HostTarget to{.framebuffer = t.framebuffer,
-                        .x = t.x,
-                        .y = t.y,
-                        .width = t.width,
-                        .height = t.height,
-                        .colours = static_cast<HostTarget::Colours>(t.colours)};
-    if (Status can = HostPicture::nothingUnderWay(); !can) return can;
-    const Result<FluidView> drawn = fluid();
-    if (!drawn) return drawn.error();
-    return context.water->draw(frame, *drawn, *look, to, row);
+    draw.target = {.framebuffer = t.framebuffer,
+                   .x = t.x,
+                   .y = t.y,
+                   .width = t.width,
+                   .height = t.height,
+                   .colours = static_cast<HostTarget::Colours>(t.colours)};
+    return draw;
 }
 
 FluidLookParams plainLook(FluidLookParams look) {
@@ -85,10 +81,12 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (world == nullptr) return badInput("world is NULL");
         if (Status there = drawable(*world->context); !there) return there;
         if (Status can = ready(*world->context, Needs::drawing); !can) return can;
-        return drawWater(*world->context, world->params.look, world->params.fluid.liquid, view, target, [&] {
-            const CallScope scope(*world->context, Needs::drawing);
-            return world->upload.view(*world->world, world->params.look, world->fallingDrops, world->hangingDrops);
-        });
+        const Result<WaterDraw> draw = waterDraw(world->params.look, world->params.fluid.liquid, view, target);
+        if (!draw) return draw.error();
+        const CallScope scope(*world->context, Needs::drawing);
+        const Result<FluidView> fluid = world->upload.view(*world->world, world->params.look, world->fallingDrops, world->hangingDrops);
+        if (!fluid) return fluid.error();
+        return world->context->water->draw(*world->context->hostGl, draw->view, *fluid, draw->look, draw->target, draw->row);
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
     return status;

@@ -1,21 +1,28 @@
 // What drawing a world and drawing a snapshot share.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "engine/core/result.h"
 #include "fluid/capi/handles.h"
+#include "fluid/render/host_target.h"
+#include "fluid/render/renderers.h"
 
 namespace rivulet::capi {
 
 // Error (badInput): the context has no OpenGL; (failed): it has ended.
 Status drawable(const rivulet_context& context);
 
-// Checks the view and the target, then draws what `fluid` returns; it is called with OpenGL in the host's state, and restores that. Error
-// (badInput): a value of the view or the target; as WaterRenderer::draw and `fluid`.
-Status drawWater(rivulet_context& context, const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
-                 const rivulet_target* target, const std::function<Result<FluidView>()>& fluid);
+// What WaterRenderer::draw takes besides the water.
+struct WaterDraw {
+    FrameView view;
+    FluidLook look;
+    HostTarget target;
+    const RendererRow* row = nullptr;
+};
+// Error (badInput): a value of the view or the target.
+Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
+                            const rivulet_target* target);
 
 // Adds the world as it is to its recording, if there is one. Error (failed): as RecordingWriter::add; the recording has then ended.
 Status recordFrame(rivulet_world& world);

@@ -43,6 +43,7 @@ struct rivulet_context {
     std::atomic<bool> drawing = false;                // a call that uses OpenGL is running
     rivulet::capi::Callback callback;                 // of that call
     std::optional<rivulet::gpu::HostState> hostGl;    // of that call, if it uses OpenGL
+    bool plainState = false;                          // as rivulet_context_options::plain_state
     std::atomic<bool> stop = false;                   // of the device
 };
 

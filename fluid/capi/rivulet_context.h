@@ -87,6 +87,10 @@ typedef struct rivulet_context_options {
     int32_t threads;                     /* that a loop runs on at most; 0: all cores, or all workers of jobs */
     const rivulet_jobs* jobs;            /* NULL: the library's own threads */
     const rivulet_memory* memory;        /* NULL: malloc */
+    /* 0: every call restores the host's OpenGL state. 1: no call asks for it, which saves about 130 calls of OpenGL; for a host that sets
+       the state it needs. Afterwards state is as in a new context, and nothing is bound to framebuffers, to texture units 0 to 11, 16 and
+       24 to 30, to uniform buffers 0 to 3 and to storage buffers 0 to 8; viewport 0 and its scissor box have any value. */
+    uint32_t plain_state;
 } rivulet_context_options;
 
 RIVULET_API rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why);

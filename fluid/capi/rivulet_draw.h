@@ -11,11 +11,13 @@ extern "C" {
 
 typedef struct rivulet_view {
     size_t size;
-    const float* view;       /* world -> view, right-handed, looking down -z */
-    const float* projection; /* a perspective, the one that the target's depth was drawn with: any glClipControl mode, reversed or not */
-    float near_plane, far_plane; /* m, finite */
+    const float* view;           /* world -> view: right- or left-handed, mirrored or not */
+    const float* projection;     /* a perspective or an orthographic one, with which the target's depth was drawn: any glClipControl mode,
+                                    reversed or not, mirrored or not, of an oblique near plane or not */
+    float near_plane, far_plane; /* along the view axis, finite; of an infinite projection, the depth of the farthest object */
     float light_direction[3];    /* towards the light; all 0: (0.4, 0.8, 0.45) */
     float light_colour[3];       /* radiance in the target's units; all 0: 1 */
+    float units_per_metre;       /* of the world that `view` transforms, and of the planes: 100 for centimetres; 0: 1 */
 } rivulet_view;
 
 typedef enum rivulet_colours {

@@ -20,9 +20,9 @@ typedef struct rivulet_mesh {
     size_t vertices;
     const uint32_t* indices; /* 3 a triangle */
     size_t indices_count;
-    const float* uvs;   /* 2 a vertex; for skins */
-    float friction;     /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
-    float restitution;  /* of a wall: 0 to 1; negative: that of fluid.collision */
+    const float* uvs;  /* 2 a vertex; for skins */
+    float friction;    /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
+    float restitution; /* of a wall: 0 to 1; negative: that of fluid.collision */
     /* Of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 2: deforms with rivulet_inputs.shapes, of those
        that are given when the world is created; 0: stands still. */
     uint32_t moves;
@@ -88,8 +88,8 @@ typedef struct rivulet_inputs {
     const rivulet_pose* poses; /* of the walls that move, in the order of their ids, at the end of the frame; NULL: as given before; after a
                                   reset those of t = 0, after a restore those that were saved */
     size_t poses_count;
-    /* Of the walls that deform, in the order of their ids: the positions of all vertices at the end of the frame, m, in the world's frame; an
-       entry that is NULL, or NULL itself: as before. Within the frame vertices move uniformly. */
+    /* Of the walls that deform, in the order of their ids: the positions of all vertices at the end of the frame, m, in the world's frame;
+       an entry that is NULL, or NULL itself: as before. Within the frame vertices move uniformly. */
     const float* const* shapes;
     size_t shapes_count;
 } rivulet_inputs;

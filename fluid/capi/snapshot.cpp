@@ -136,17 +136,19 @@ rivulet_status rivulet_snapshot_replay(rivulet_snapshot* snapshot, const rivulet
 
 rivulet_status rivulet_snapshot_draw(rivulet_snapshot* snapshot, const rivulet_view* view, const rivulet_target* target,
                                      rivulet_error* why) {
-    return whileStepping(snapshot, why, [&] {
-        return drawWater(*snapshot->context, snapshot->look, snapshot->liquid, view, target, [&] {
-            const gpu::HostState keep;
-            return snapshot->upload.view(snapshot->taken, snapshot->look);
-        });
+    return whileStepping(snapshot, why, [&]() -> Status {
+        const Result<WaterDraw> draw = waterDraw(snapshot->look, snapshot->liquid, view, target);
+        if (!draw) return draw.error();
+        const gpu::HostState keep(savesOf(*snapshot->context));
+        const Result<FluidView> fluid = snapshot->upload.view(snapshot->taken, snapshot->look);
+        if (!fluid) return fluid.error();
+        return snapshot->context->water->draw(keep, draw->view, *fluid, draw->look, draw->target, draw->row);
     });
 }
 
 rivulet_status rivulet_snapshot_buffers(rivulet_snapshot* snapshot, rivulet_buffers* buffers, rivulet_error* why) {
     return whileStepping(snapshot, why, [&]() -> Status {
-        const gpu::HostState keep;
+        const gpu::HostState keep(savesOf(*snapshot->context));
         const Result<FluidView> fluid = snapshot->upload.view(snapshot->taken, plainLook(snapshot->look));
         if (!fluid) return fluid.error();
         return writeStruct(buffersOf(*fluid), buffers, "rivulet_buffers", "buffers");

@@ -39,6 +39,7 @@ gpu::TextureHandle addCaustics(gpu::FrameGraph& graph, FluidPrograms& programs, 
     size.format = gpu::Format::rg32f;
     const gpu::TextureHandle landed = graph.texture("photons", size);
     graph.pass("photons", {{d.frame, gpu::Usage::uniform}, water, d.shadowSharp}, {landed, flux}, [=, &programs](gpu::PassContext& c) {
+        c.state({});
         c.drawTo({landed, flux});
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         gpu::Program& p = programs["photons"];
@@ -52,13 +53,13 @@ gpu::TextureHandle addCaustics(gpu::FrameGraph& graph, FluidPrograms& programs, 
         c.drawFullscreen();
     });
     graph.pass("caustics", {landed, flux}, {light}, [=, &programs](gpu::PassContext& c) {
+        c.state({});
         c.drawTo({light});
         gpu::Program& dry = programs["caustics, dry"];
         dry.use();
         dry.texture("flux", 1, c.texture(flux));
         c.drawFullscreen();
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE);
+        c.state({.blendTarget = GL_ONE});
         gpu::Program& p = programs["caustics"];
         p.use();
         p.texture("landed", 0, c.texture(landed));

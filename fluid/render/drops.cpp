@@ -27,11 +27,9 @@ gpu::TextureHandle addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, con
     if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
     graph.pass("drops", reads, {layers.colour, depth}, [=, &programs](gpu::PassContext& c) {
         c.drawTo({layers.colour}, depth);
-        glEnable(GL_DEPTH_TEST);
-        glDepthFunc(GL_ALWAYS);  // the shaders compare
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        // The shaders compare depths.
+        c.state({.depthTest = true, .depthFunction = GL_ALWAYS, .blendSource = GL_SRC_ALPHA, .blendTarget = GL_ONE_MINUS_SRC_ALPHA});
         const auto draw = [&](const char* alone, const char* overWater, unsigned buffer, uint32_t count) {
             if (count == 0) return;
             gpu::Program& p = programs[layers.fluidDepth ? overWater : alone];

@@ -37,7 +37,8 @@ struct Levels {
 Levels levelsOf(const FluidDraw& d, float reach) {
     const Bounds& box = d.fluid.bounds;
     const float away = box.empty() ? 1.0F : glm::length(d.view.cameraPosWorld - glm::clamp(d.view.cameraPosWorld, box.min, box.max));
-    const float pixelsPerMetre = 0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / std::max(away, d.view.nearPlane);
+    const float pixelsPerMetre =
+        0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / d.view.spreadAt(std::max(away, d.view.nearPlane));
     Levels levels{};
     for (const std::span<const float> steps : {std::span<const float>(kFarSteps), std::span<const float>(kMiddleSteps),
                                                std::span<const float>(kNearSteps), std::span<const float>(kNearestSteps)}) {

@@ -37,6 +37,7 @@ gpu::TextureHandle addTiled(gpu::FrameGraph& graph, const char* name, FluidProgr
                             gpu::TextureHandle tiles, gpu::TextureHandle from, const gpu::TextureDesc& desc, float empty, Setup setup) {
     const gpu::TextureHandle to = graph.texture(name, desc);
     graph.pass(name, {{d.frame, gpu::Usage::uniform}, tiles, from}, {to}, [=, &programs, &program](gpu::PassContext& c) {
+        c.state({});
         c.drawTo({to}).clearColour(vec4(empty));
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         program.use();

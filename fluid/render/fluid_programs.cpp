@@ -128,11 +128,15 @@ Status FluidPrograms::fits(const FluidView& fluid) const {
 }
 
 void FluidPrograms::bindRows(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows) {
-    for (GLuint k = 0; k < rows.size(); ++k) {
-        if (rows[k].buffer == 0) continue;
-        glTextureBuffer(rowTextures[k].name(), rows[k].format, rows[k].buffer);
-        glBindTextureUnit(kRowUnit + k, rowTextures[k].name());
+    // A texture without a buffer is read as zeros.
+    std::array<GLuint, std::tuple_size_v<decltype(rowTextures)>> names{};
+    for (size_t k = 0; k < names.size(); ++k) {
+        const QuadRows row = k < rows.size() ? rows[k] : QuadRows();
+        names[k] = rowTextures[k].name();
+        if (row.buffer != 0 || rowsThere[k]) glTextureBuffer(names[k], row.format, row.buffer);
+        rowsThere[k] = row.buffer != 0;
     }
+    glBindTextures(kRowUnit, static_cast<GLsizei>(names.size()), names.data());
     program.set("firstRow", range.first);
     program.set("rows", range.first + range.count);
 }
@@ -145,7 +149,6 @@ void FluidPrograms::drawQuads(gpu::Program& program, const RowRange& range, std:
     quads.bind();
     const uint32_t instances = (count + kQuadRows - 1) / kQuadRows, quadsEach = instances > 1 ? kQuadRows : count;
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * quadsEach), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
-    for (GLuint k = 0; k < rows.size(); ++k) glBindTextureUnit(kRowUnit + k, 0);
 }
 
 namespace {
@@ -173,7 +176,6 @@ void FluidPrograms::drawSplats(gpu::Program& program, const FluidView& fluid, co
     glEnable(GL_PROGRAM_POINT_SIZE);
     glDrawArrays(GL_POINTS, static_cast<GLint>(range.first), static_cast<GLsizei>(range.count));
     glDisable(GL_PROGRAM_POINT_SIZE);
-    for (GLuint k = 0; k < rows.size(); ++k) glBindTextureUnit(kRowUnit + k, 0);
 }
 
 void FluidPrograms::drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit) {

@@ -51,6 +51,7 @@ struct FluidPrograms {
     gpu::VertexArray quads, none;
     gpu::Buffer quadIndices;
     std::array<gpu::TextureName, 7> rowTextures;
+    std::array<bool, 7> rowsThere = {};         // it has a buffer
     std::shared_ptr<MarchedReference> marched;  // the last picture of the row `reference`
     KeptPictures kept;                          // of sleeping particles
     uint32_t mostTexels = 0;                    // of a buffer that shaders read as a texture: the limit of this GPU

@@ -92,6 +92,13 @@ class FluidUpload {
         bool hurried = false;
         uint32_t half = 0;
     } held_;
+    // The last view of a world: while its particles do not change, another view, of another eye say, needs no copy.
+    struct Last {
+        std::shared_ptr<const void> revision;
+        float radiusSpacings = 0;
+        bool normals = false, ellipsoids = false, hurried = false;
+        FluidView view;
+    } last_;
     TransferFacts facts_;
     size_t mostBytes_ = SIZE_MAX;
 };

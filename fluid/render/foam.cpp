@@ -17,8 +17,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
     graph.pass("foam", reads, {layers.colour}, [=, &programs](PassContext& c) {
         c.drawTo({layers.colour});
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        c.state({.blendSource = GL_SRC_ALPHA, .blendTarget = GL_ONE_MINUS_SRC_ALPHA});
         gpu::Program& p = programs[layers.fluidDepth ? "foam over water" : "foam"];
         p.use();
         p.set("radius", 0.15F * d.fluid.spacing);

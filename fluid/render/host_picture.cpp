@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <rivulet_glad/gl.h>
 
-#include <cmath>
+#include <algorithm>
 #include <vector>
 
 #include "engine/core/readable_bytes.h"
@@ -11,6 +11,8 @@
 
 namespace rivulet {
 namespace {
+
+constexpr uint64_t kKeepDraws = 24;  // pictures of a size not drawn for this many draws are freed
 
 GLint asked(GLuint framebuffer, GLenum attachment, GLenum what) {
     GLint value = 0;
@@ -48,39 +50,6 @@ std::vector<GLenum> depthFormats(GLuint framebuffer) {
     return all;
 }
 
-bool isPerspective(const mat4& p) {
-    return p[0][0] != 0 && p[1][1] != 0 && p[0][1] == 0 && p[0][2] == 0 && p[0][3] == 0 && p[1][0] == 0 && p[1][2] == 0 && p[1][3] == 0 &&
-           p[2][3] == -1 && p[3][3] == 0 && p[3][0] == 0 && p[3][1] == 0;
-}
-
-bool isFinite(const mat4& m) {
-    for (int column = 0; column < 4; ++column)
-        if (!rivulet::isFinite(vec3(m[column])) || !std::isfinite(m[column].w)) return false;
-    return true;
-}
-
-// True if the matrix is a rotation and a translation, without scale; a mirror image is accepted.
-bool isRigid(const mat4& m) {
-    constexpr float kOff = 1.0e-3F;
-    for (int a = 0; a < 3; ++a)
-        for (int b = 0; b <= a; ++b)
-            if (!(std::abs(glm::dot(vec3(m[a]), vec3(m[b])) - (a == b ? 1.0F : 0.0F)) < kOff)) return false;
-    return m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1;
-}
-
-Status usable(const FrameView& v) {
-    if (!isFinite(v.view) || !isFinite(v.projection)) return badInput("FrameView::view or projection has a value that is not finite");
-    if (!isRigid(v.view))
-        return badInput("FrameView::view is not a rotation and a translation; use glm::lookAt, and scale the scene instead");
-    if (!isPerspective(v.projection))
-        return badInput("FrameView::projection is not a perspective projection; use glm::perspective or glFrustum");
-    if (!(v.nearPlane > 0) || !(v.farPlane > v.nearPlane) || !std::isfinite(v.farPlane))
-        return badInput("FrameView::nearPlane and farPlane must be positive and finite, the second beyond the first (m)");
-    if (!rivulet::isFinite(v.lightDirWorld) || v.lightDirWorld == vec3(0.0F) || !rivulet::isFinite(v.lightColour))
-        return badInput("FrameView::lightDirWorld or lightColour is not finite, or the direction is 0");
-    return ok();
-}
-
 // Error (badInput): water cannot be drawn into the target.
 Status usable(const HostTarget& t) {
     if (t.width <= 0 || t.height <= 0)
@@ -99,19 +68,10 @@ Status usable(const HostTarget& t) {
 
 }  // namespace
 
-HostDepth HostDepth::current() {
-    GLint origin = 0, mode = 0;
-    glGetIntegerv(GL_CLIP_ORIGIN, &origin);
-    glGetIntegerv(GL_CLIP_DEPTH_MODE, &mode);
-    GLfloat range[2] = {0, 1};
-    glGetFloatv(GL_DEPTH_RANGE, range);
-    return {.zeroToOne = mode == GL_ZERO_TO_ONE, .upperLeft = origin == GL_UPPER_LEFT, .near = range[0], .far = range[1]};
-}
-
 Status HostPicture::nothingUnderWay() {
     GLboolean active = GL_FALSE, paused = GL_FALSE;
     glGetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
-    glGetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
+    if (active == GL_TRUE) glGetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
     if (active == GL_TRUE && paused == GL_FALSE) return badInput("transform feedback is active; pause or end it before drawing water");
     for (const GLenum counts : {GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, GL_PRIMITIVES_GENERATED,
                                 GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN}) {
@@ -136,77 +96,93 @@ Result<HostPicture> HostPicture::create(const ShaderFiles& files) {
         *program = std::move(*result);
     }
     p.none_ = gpu::VertexArray::create();
+    glGetIntegerv(GL_MAX_DRAW_BUFFERS, &p.mostOutputs_);
     return p;
 }
 
-Status HostPicture::fit(int width, int height) {
-    if (colour_ && colour_.width() == width && colour_.height() == height) return ok();
-    const std::pair<gpu::Texture*, gpu::Format> wanted[] = {
-        {&raw_, gpu::Format::rgba16f}, {&colour_, gpu::Format::rgba16f}, {&depth_, gpu::Format::depth32f}};
-    colour_ = {};  // if one fails, all are created again next time
-    size_t needed = 0;
-    for (const auto& [texture, format] : wanted) needed += gpu::TextureDesc{.width = width, .height = height, .format = format}.bytes();
+size_t HostPicture::Pictures::bytes() const {
     // And a copy of the host's depth in its own format.
-    needed += gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}.bytes();
+    return raw.desc().bytes() + colour.desc().bytes() + depth.desc().bytes() * (1 + std::max<size_t>(rawDepths.size(), 1));
+}
+
+Status HostPicture::fit(int width, int height) {
+    ++draws_;
+    std::erase_if(all_, [&](const auto& p) { return p->used + kKeepDraws < draws_; });
+    const auto at =
+        std::find_if(all_.begin(), all_.end(), [&](const auto& p) { return p->colour.width() == width && p->colour.height() == height; });
+    now_ = at != all_.end() ? at->get() : nullptr;
+    if (now_ != nullptr) {
+        now_->used = draws_;
+        return ok();
+    }
+    auto made = std::make_unique<Pictures>();
+    const std::pair<gpu::Texture*, gpu::Format> wanted[] = {
+        {&made->raw, gpu::Format::rgba16f}, {&made->colour, gpu::Format::rgba16f}, {&made->depth, gpu::Format::depth32f}};
+    size_t needed = gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}.bytes();  // as bytes()
+    for (const auto& [texture, format] : wanted) needed += gpu::TextureDesc{.width = width, .height = height, .format = format}.bytes();
+    if (bytes() + needed > most_) all_.clear();
     if (needed > most_)
         return failed(fmt::format("a picture of {} x {} pixels needs {}, and {} are allowed for pictures; allow more, or draw fewer pixels",
                                   width, height, readableBytes(needed), readableBytes(most_)));
     for (const auto& [texture, format] : wanted) {
-        Result<gpu::Texture> made = gpu::Texture::create({.width = width, .height = height, .format = format});
-        if (!made) return made.error();
-        *texture = std::move(*made);
+        Result<gpu::Texture> texels = gpu::Texture::create({.width = width, .height = height, .format = format});
+        if (!texels) return texels.error();
+        *texture = std::move(*texels);
     }
-    raw_.setSampling({.min = gpu::Filter::nearest, .mag = gpu::Filter::nearest});
-    rawFormat_ = 0;
+    made->raw.setSampling({.min = gpu::Filter::nearest, .mag = gpu::Filter::nearest});
+    made->rawTarget = gpu::Framebuffer(made->raw, nullptr);
+    made->target = gpu::Framebuffer(made->colour, &made->depth);
+    made->used = draws_;
+    all_.push_back(std::move(made));
+    now_ = all_.back().get();
     return ok();
 }
 
 Status HostPicture::takeDepth(const HostTarget& t) {
     const std::vector<GLenum> formats = depthFormats(t.framebuffer);
-    depthThere_ = !formats.empty();
+    rawDepth_ = 0;
+    std::vector<RawDepth>& kept = now_->rawDepths;
     for (const GLenum format : formats) {
-        if (rawFormat_ != format) {
+        auto raw = std::find_if(kept.begin(), kept.end(), [&](const RawDepth& r) { return r.format == format; });
+        gpu::clearGlErrors();
+        if (raw == kept.end()) {
+            RawDepth made{.format = format, .texture = {}, .framebuffer = {}};
             GLuint name = 0;
             glCreateTextures(GL_TEXTURE_2D, 1, &name);
-            rawDepth_ = gpu::TextureName(name);
-            gpu::clearGlErrors();
-            glTextureStorage2D(name, 1, format, raw_.width(), raw_.height());
+            made.texture = gpu::TextureName(name);
+            glTextureStorage2D(name, 1, format, now_->raw.width(), now_->raw.height());
             if (gpu::takeGlError() != GL_NO_ERROR) continue;
             glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
             glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
             const bool both = format == GL_DEPTH24_STENCIL8 || format == GL_DEPTH32F_STENCIL8;
             glCreateFramebuffers(1, &name);
-            rawFramebuffer_ = gpu::FramebufferName(name);
-            glNamedFramebufferTexture(name, both ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, rawDepth_.name(), 0);
+            made.framebuffer = gpu::FramebufferName(name);
+            glNamedFramebufferTexture(name, both ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, made.texture.name(), 0);
             glNamedFramebufferDrawBuffer(name, GL_NONE);
-            rawFormat_ = format;
+            raw = kept.insert(kept.end(), std::move(made));
         }
-        gpu::clearGlErrors();
-        glBlitNamedFramebuffer(t.framebuffer, rawFramebuffer_.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
+        glBlitNamedFramebuffer(t.framebuffer, raw->framebuffer.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
                                GL_DEPTH_BUFFER_BIT, GL_NEAREST);
-        if (gpu::takeGlError() == GL_NO_ERROR) return ok();
-        rawFormat_ = 0;
+        if (gpu::takeGlError() == GL_NO_ERROR) {
+            rawDepth_ = raw->texture.name();
+            return ok();
+        }
+        kept.erase(raw);  // not the host's format
     }
-    if (depthThere_)
+    if (!formats.empty())
         return failed(
             fmt::format("the depth of framebuffer {} has a format that cannot be copied; use 24 bits or 32-bit floats", t.framebuffer));
     return ok();
 }
 
-Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const FrameView& host) {
+Status HostPicture::take(const HostTarget& t, const gpu::HostDepth& depth, const FrameView& host) {
     if (Status can = usable(t); !can) return can;
-    if (Status can = usable(host); !can) return can;
-    if (depth.upperLeft) return badInput("glClipControl is set to GL_UPPER_LEFT; set GL_LOWER_LEFT, GL_ZERO_TO_ONE may stay");
+    Result<HostView> seen = HostView::of(host, depth, t.width, t.height);
+    if (!seen) return seen.error();
     if (Status fitting = fit(t.width, t.height); !fitting) return fitting;
     target_ = t;
     hostDepth_ = depth;
-    hostPlanes_ = vec2(host.projection[2][2], host.projection[3][2]);
-    view_ = host;
-    view_.width = t.width;
-    view_.height = t.height;
-    const float n = host.nearPlane, f = host.farPlane;
-    view_.projection[2][2] = -(f + n) / (f - n);
-    view_.projection[3][2] = -2 * f * n / (f - n);
+    seen_ = *seen;
 
     // Colour: the content of the first draw buffer.
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, t.framebuffer);
@@ -224,25 +200,21 @@ Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const Fram
     glBindFramebuffer(GL_READ_FRAMEBUFFER, t.framebuffer);
     glGetIntegerv(GL_READ_BUFFER, &reads);
     if (reads != draws) glNamedFramebufferReadBuffer(t.framebuffer, static_cast<GLenum>(draws));
-    gpu::Framebuffer raw(raw_, nullptr);
-    glBlitNamedFramebuffer(t.framebuffer, raw.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height, GL_COLOR_BUFFER_BIT,
-                           GL_NEAREST);
+    glBlitNamedFramebuffer(t.framebuffer, now_->rawTarget.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
     if (reads != draws) glNamedFramebufferReadBuffer(t.framebuffer, static_cast<GLenum>(reads));
     if (Status taken = takeDepth(t); !taken) return taken;
 
-    const gpu::Framebuffer into(colour_, &depth_);
-    into.bind();
+    now_->target.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     in_.use();
-    in_.texture("hostColour", 0, raw_);
+    in_.texture("hostColour", 0, now_->raw);
     in_.set("hostDepth", 1);
-    glBindTextureUnit(1, depthThere_ ? rawDepth_.name() : raw_.name());
-    in_.set("depthThere", depthThere_ ? 1 : 0);
-    in_.set("isLinear", linear_ ? 1 : 0);
-    in_.set("hostPlanes", vec4(hostPlanes_, hostDepth_.near, hostDepth_.far));
-    in_.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
-    in_.set("planes", vec2(view_.projection[2][2], view_.projection[3][2]));
+    glBindTextureUnit(1, rawDepth_ != 0 ? rawDepth_ : now_->raw.name());
+    in_.set("depthThere", rawDepth_ != 0 ? 1 : 0);
+    setUniforms(in_);
+    in_.set("planes", planes());
     none_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthFunc(GL_LESS);
@@ -250,35 +222,61 @@ Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const Fram
     return ok();
 }
 
+void HostPicture::setUniforms(gpu::Program& p) const {
+    p.set("isLinear", linear_ ? 1 : 0);
+    p.set("depthRow", seen_.depthRow);
+    p.set("hostParallel", seen_.view.parallel() ? 1 : 0);
+    p.set("hostRange", vec2(hostDepth_.near, hostDepth_.far));
+    p.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
+    const bool x = seen_.flipX, y = seen_.flipY;
+    p.set("mirror", vec4(x ? target_.width - 1 : 0, y ? target_.height - 1 : 0, x ? -1 : 1, y ? -1 : 1));
+}
+
 size_t HostPicture::bytes() const {
-    if (!colour_) return 0;
-    return raw_.desc().bytes() + colour_.desc().bytes() + 2 * depth_.desc().bytes();
+    size_t sum = 0;
+    for (const auto& p : all_) sum += p->bytes();
+    return sum;
+}
+
+// The shader writes the first output alone; others of the host's would receive undefined values.
+void HostPicture::limitOutputs() {
+    masked_.clear();
+    for (GLint k = 1; k < mostOutputs_; ++k) {
+        GLint to = GL_NONE;
+        glGetIntegerv(GL_DRAW_BUFFER0 + static_cast<GLenum>(k), &to);
+        if (to == GL_NONE) continue;
+        Output output{.index = static_cast<GLuint>(k), .mask = {}};
+        glGetBooleani_v(GL_COLOR_WRITEMASK, output.index, output.mask.data());
+        glColorMaski(output.index, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        masked_.push_back(output);
+    }
+}
+
+void HostPicture::freeOutputs() {
+    for (const Output& output : masked_) glColorMaski(output.index, output.mask[0], output.mask[1], output.mask[2], output.mask[3]);
 }
 
 void HostPicture::give(const gpu::Texture& picture, const gpu::Texture* fluidDepth) {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target_.framebuffer);
-    glViewport(target_.x, target_.y, target_.width, target_.height);
-    GLint buffers = 0;
-    glGetIntegerv(GL_MAX_DRAW_BUFFERS, &buffers);
-    for (GLint k = 1; k < buffers; ++k) glColorMaski(static_cast<GLuint>(k), GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glViewportIndexedf(0, static_cast<float>(target_.x), static_cast<float>(target_.y), static_cast<float>(target_.width),
+                       static_cast<float>(target_.height));
+    limitOutputs();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     gpu::Program& p = fluidDepth != nullptr ? out_ : outOpaque_;
     p.use();
     p.texture("picture", 0, picture);
-    p.texture("scene", 1, colour_);
-    p.texture("hostColour", 2, raw_);
-    p.texture("depths", 3, fluidDepth != nullptr ? *fluidDepth : depth_);
+    p.texture("scene", 1, now_->colour);
+    p.texture("hostColour", 2, now_->raw);
+    p.texture("depths", 3, fluidDepth != nullptr ? *fluidDepth : now_->depth);
     p.set("hostDepth", 4);
-    glBindTextureUnit(4, depthThere_ ? rawDepth_.name() : raw_.name());
-    p.set("isLinear", linear_ ? 1 : 0);
-    p.set("hostPlanes", vec4(hostPlanes_, hostDepth_.near, hostDepth_.far));
-    p.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
+    glBindTextureUnit(4, rawDepth_ != 0 ? rawDepth_ : now_->raw.name());
+    setUniforms(p);
     p.set("origin", ivec2(target_.x, target_.y));
-    if (fluidDepth == nullptr) p.set("planes", vec2(view_.projection[2][2], view_.projection[3][2]));
+    if (fluidDepth == nullptr) p.set("planes", planes());
     none_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    freeOutputs();
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);
 }

@@ -2,20 +2,18 @@
 // framebuffer where there is water. Any format, number of samples and depth convention.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 #include "engine/gpu/framebuffer.h"
 #include "engine/gpu/program.h"
 #include "engine/gpu/vertex_array.h"
-#include "engine/render/frame_view.h"
 #include "fluid/render/host_target.h"
+#include "fluid/render/host_view.h"
 
 namespace rivulet {
-
-// The host's depth convention, read from OpenGL before gpu::HostState changes its state.
-struct HostDepth {
-    bool zeroToOne = false, upperLeft = false;  // glClipControl: GL_ZERO_TO_ONE, GL_UPPER_LEFT
-    float near = 0, far = 1;                    // glDepthRange
-    static HostDepth current();
-};
 
 class HostPicture {
   public:
@@ -23,17 +21,15 @@ class HostPicture {
     static Result<HostPicture> create(const ShaderFiles& files);
 
     // Error (badInput): transform feedback is active, or a query that would count these draws. Conditional rendering cannot be detected.
-    // Call it before gpu::HostState.
     static Status nothingUnderWay();
     // Fetches the scene, in the plain state that gpu::HostState makes. Error (badInput): a target of no size, that is incomplete, without a
-    // colour or of whole numbers; a view that is not finite or scales; a projection that is not a perspective; GL_UPPER_LEFT. (failed): out
-    // of memory; a depth that cannot be copied.
-    Status take(const HostTarget& target, const HostDepth& depth, const FrameView& host);
-    const FrameView& view() const { return view_; }         // the host's, with Rivulet's depth convention and the target's size
-    const gpu::Texture& colour() const { return colour_; }  // rgba16f, linear radiance
-    const gpu::Texture& depth() const { return depth_; }    // depth32f, window depth by view()'s projection
-    size_t bytes() const;                                   // of its textures
-    void limit(size_t bytes) { most_ = bytes; }             // the limit of bytes(): take() fails beyond it
+    // colour or of whole numbers; as HostView::of. (failed): out of memory; a depth that cannot be copied.
+    Status take(const HostTarget& target, const gpu::HostDepth& depth, const FrameView& host);
+    const FrameView& view() const { return seen_.view; }         // the host's, in Rivulet's convention, of the target's size
+    const gpu::Texture& colour() const { return now_->colour; }  // rgba16f, linear radiance
+    const gpu::Texture& depth() const { return now_->depth; }    // depth32f, window depth by view()'s projection
+    size_t bytes() const;                                        // of its textures: of each size that was drawn lately
+    void limit(size_t bytes) { most_ = bytes; }                  // the limit of bytes(): take() fails beyond it
 
     // Puts a picture into the target where it differs from colour(), and its depth: that of water, `fluidDepth` (m; 1e6 where there is
     // none), or null: depth().
@@ -41,18 +37,40 @@ class HostPicture {
 
   private:
     Status fit(int width, int height);
+    vec2 planes() const { return {seen_.view.projection[2][2], seen_.view.projection[3][2]}; }
     Status takeDepth(const HostTarget& target);
+    void limitOutputs();
+    void freeOutputs();
+    void setUniforms(gpu::Program& program) const;  // of host.glsl, the same in both directions
 
     HostTarget target_;
-    HostDepth hostDepth_;
-    vec2 hostPlanes_{0.0F};  // [2][2] and [3][2] of the host's projection
-    FrameView view_;
-    bool linear_ = false, depthThere_ = false;
+    gpu::HostDepth hostDepth_;
+    HostView seen_;
+    bool linear_ = false;
     gpu::Program in_, out_, outOpaque_;
-    gpu::TextureName rawDepth_;
-    gpu::FramebufferName rawFramebuffer_;
-    unsigned rawFormat_ = 0;
-    gpu::Texture raw_, colour_, depth_;
+    // The textures of one size, kept while targets of that size are drawn to.
+    struct RawDepth {  // in the host's own format
+        unsigned format = 0;
+        gpu::TextureName texture;
+        gpu::FramebufferName framebuffer;
+    };
+    struct Pictures {
+        gpu::Texture raw, colour, depth;
+        gpu::Framebuffer rawTarget, target;  // of raw; of colour and depth
+        std::vector<RawDepth> rawDepths;
+        uint64_t used = 0;
+        size_t bytes() const;
+    };
+    std::vector<std::unique_ptr<Pictures>> all_;
+    Pictures* now_ = nullptr;
+    unsigned rawDepth_ = 0;  // of now_; 0: the host has no depth
+    uint64_t draws_ = 0;
+    int mostOutputs_ = 0;
+    struct Output {
+        unsigned index = 0;
+        std::array<unsigned char, 4> mask{};
+    };
+    std::vector<Output> masked_;  // the host's draw buffers that are not written
     gpu::VertexArray none_;
     size_t most_ = SIZE_MAX;
 };

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/gpu/gl_object.h"
 #include "engine/gpu/texture.h"
 
 namespace rivulet {
@@ -19,6 +20,7 @@ struct KeptPicture {
     enum Part { spheres, thickness, ink, scene, surface, tiles, light, caustics, kParts };
     std::array<gpu::Texture, kParts> textures;
     std::array<bool, kParts> drawn = {};  // set by the pass that draws it
+    gpu::QueryName changed;               // whether the scene has, since `thickness` was cut at it
     size_t bytes() const;
 };
 

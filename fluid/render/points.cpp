@@ -27,7 +27,7 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
         const gpu::Framebuffer& target = c.drawTo({surface, normal}, d.depth);
         target.clearColour(vec4(0.0F), 0);
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
-        glEnable(GL_DEPTH_TEST);
+        c.state({.depthTest = true});
         gpu::Program& p = programs["points"];
         p.use();
         p.set("radius", d.fluid.radius);
@@ -41,6 +41,7 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
     const gpu::TextureHandle tiles = addTiles(graph, programs, d);
     graph.pass("points shade", {{d.frame, Usage::uniform}, surface, normal, d.depth, tiles, d.shadowSharp, d.shadowSoft}, {d.colour},
                [=, &programs](PassContext& c) {
+                   c.state({});
                    c.drawTo({d.colour});
                    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
                    gpu::Program& p = programs["points shade"];

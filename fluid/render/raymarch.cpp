@@ -205,8 +205,11 @@ RaymarchPicture raymarch(const IsoSurface& surface, const FrameView& view, const
     int done = 0;
     const auto pixel = [&](int x, int y) {
         const dvec2 clip(2 * (x + 0.5) / picture.width - 1, 2 * (y + 0.5) / picture.height - 1);
-        const dvec3 v((clip.x + projection[2][0]) / projection[0][0], (clip.y + projection[2][1]) / projection[1][1], -1);
-        const Ray ray{dvec3(toWorld[3]), turn * v, glm::length(v)};
+        const dvec2 place((clip.x + projection[2][0] - projection[3][0]) / projection[0][0],
+                          (clip.y + projection[2][1] - projection[3][1]) / projection[1][1]);
+        const dvec3 v = view.parallel() ? dvec3(0, 0, -1) : dvec3(place, -1);
+        const dvec3 from = view.parallel() ? dvec3(toWorld * glm::dvec4(place, 0, 1)) : dvec3(toWorld[3]);
+        const Ray ray{from, turn * v, glm::length(v)};
         const size_t at = static_cast<size_t>(y) * static_cast<size_t>(picture.width) + static_cast<size_t>(x);
         const double until = options.until.empty() ? double{view.farPlane} : double{options.until[at]};
         const Hit hit = marcher.march(ray, double{view.nearPlane}, until, options.box);

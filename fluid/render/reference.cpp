@@ -34,12 +34,12 @@ void upload(const gpu::Texture& to, const std::vector<T>& texels) {
     glTextureSubImage2D(to.name(), 0, 0, 0, to.width(), to.height(), format.layout, format.type, texels.data());
 }
 
-// Along the view axis, m, from window depth; see frame.glsl.
+// Along the view axis, m, from window depth: depthOfWindow() of frame.glsl.
 std::vector<float> sceneDepths(const gpu::Texture& window, const FrameView& view) {
     std::vector<float> depths(static_cast<size_t>(window.width()) * static_cast<size_t>(window.height()));
     window.read(std::as_writable_bytes(std::span(depths)));
     const float a = view.projection[2][2], b = view.projection[3][2];
-    for (float& z : depths) z = b / (2 * z - 1 + a);
+    for (float& z : depths) z = view.parallel() ? (b + 1 - 2 * z) / a : b / (2 * z - 1 + a);
     return depths;
 }
 
@@ -80,9 +80,13 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
     size.format = Format::rgba32f;
     water.normals = graph.texture("reference normals", size);
     water.tiles = graph.texture("all tiles", {.width = 1, .height = 1, .format = Format::r8});
-    graph.pass("all tiles", {}, {water.tiles}, [=](PassContext& c) { c.drawTo({water.tiles}).clearColour(vec4(1.0F)); });
+    graph.pass("all tiles", {}, {water.tiles}, [=](PassContext& c) {
+        c.state({});
+        c.drawTo({water.tiles}).clearColour(vec4(1.0F));
+    });
     graph.pass("reference", {{d.position, Usage::copy}, {d.depth, Usage::copy}}, {{water.depth, Usage::copy}, {water.normals, Usage::copy}},
                [=, &programs](PassContext& c) {
+                   c.state({});
                    std::vector<vec4> particles(d.fluid.count);
                    glGetNamedBufferSubData(c.buffer(d.position), 0, static_cast<GLsizeiptr>(particles.size() * sizeof(vec4)),
                                            particles.data());

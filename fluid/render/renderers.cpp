@@ -50,7 +50,8 @@ Splats splatsOf(const FluidDraw& d, float radius, int scale) {
     const float wide = std::abs(p[0][0]), tall = std::abs(p[1][1]);
     const float x = (1.0F + std::abs(p[2][0])) / wide, y = (1.0F + std::abs(p[2][1])) / tall;
     const float pixels = std::max(wide * target.x, tall * target.y);  // of 2 m at a depth of 1 m
-    const float largest = kLongest * radius * std::sqrt(1.0F + x * x + y * y) * pixels / nearest;
+    const float slant = d.view.parallel() ? 1.0F : std::sqrt(1.0F + x * x + y * y);
+    const float largest = kLongest * radius * slant * pixels / d.view.spreadAt(nearest);
     // From afar one represents others, and is larger: see representedBy().
     const float far = std::min(kMostLarger * largest, 2 * kLongest * kMostLarger * detailOf(d));
     return {target, detailOf(d) > 0 ? std::max(largest, far) : largest};
@@ -59,6 +60,7 @@ Splats splatsOf(const FluidDraw& d, float radius, int scale) {
 void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle from, gpu::TextureHandle to,
                 const std::function<void()>& done) {
     graph.pass(name, {{from, gpu::Usage::copy}}, {{to, gpu::Usage::copy}}, [=](gpu::PassContext& c) {
+        c.state({});
         const gpu::Texture &a = c.texture(from), &b = c.texture(to);
         glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);
         if (done) done();
@@ -75,6 +77,7 @@ gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, con
     const gpu::TextureDesc size = tilesOf(d.view);
     const gpu::TextureHandle tiles = graph.texture("water tiles", size);
     graph.pass("tiles", splatReads(d), {tiles}, [=, &programs](gpu::PassContext& c) {
+        c.state({});
         c.drawTo({tiles}).clearColour(vec4(0.0F));
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         gpu::Program& mark = programs.splat("mark tiles", d.fluid);

@@ -71,7 +71,8 @@ Drawn allOf(const FluidView& f) {
 int thicknessReach(const FluidDraw& d, int scale) {
     const vec3 middle = d.fluid.bounds.empty() ? vec3(0.0F) : d.fluid.bounds.centre();
     const float depth = std::max(-(d.view.view * vec4(middle, 1.0F)).z, d.view.nearPlane);
-    const float texel = 2.0F * static_cast<float>(scale) * depth / (d.view.projection[1][1] * static_cast<float>(d.view.height));
+    const float texel =
+        2.0F * static_cast<float>(scale) * d.view.spreadAt(depth) / (d.view.projection[1][1] * static_cast<float>(d.view.height));
     // At least four pixels, or from afar texels of one size and of another would show.
     return std::clamp(static_cast<int>(std::lround(kThicknessBlur * d.fluid.spacing / texel)), std::max(4 / scale, 1), kMostThicknessBlur);
 }
@@ -126,19 +127,20 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
             if (clears) target.clearColour(vec4(kNoDepth));
             target.clearDepth();
             const Splats splats = splatsOf(d, d.fluid.radius, 1);
+            gpu::PassState state;
             if (prepare) {
-                glEnable(GL_DEPTH_TEST);
-                glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+                state = {.depthTest = true, .colourWrites = false};
+                c.state(state);
                 Program& occluder = programs.splat("occluder", d.fluid);
                 occluder.use();
                 occluder.set("radius", d.fluid.radius);
                 occluder.set("detail", detailOf(d));
                 for (const RowRange& range : rows) programs.drawSplats(occluder, d.fluid, splats, range);
-                glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-                glDepthMask(GL_FALSE);
+                state.depthWrites = false;
+                state.colourWrites = true;
             }
-            glEnable(GL_BLEND);
-            glBlendEquation(GL_MIN);
+            state.blendEquation = GL_MIN;
+            c.state(state);
             Program& p = programs.splat("depth", d.fluid);
             p.use();
             p.set("radius", d.fluid.radius);
@@ -157,6 +159,7 @@ TextureHandle addTilesOf(FrameGraph& graph, FluidPrograms& programs, const Fluid
         graph.texture("water blocks", {.width = (from.width + 7) / 8, .height = (from.height + 7) / 8, .format = Format::r8});
     const TextureHandle tiles = graph.texture("water tiles", size);
     graph.pass("tiles", {spheres}, {blocks}, [=, &programs](PassContext& c) {
+        c.state({});
         c.drawTo({blocks});
         Program& p = programs["water blocks"];
         p.use();
@@ -164,6 +167,7 @@ TextureHandle addTilesOf(FrameGraph& graph, FluidPrograms& programs, const Fluid
         c.drawFullscreen();
     });
     graph.pass("tiles", {blocks}, {tiles}, [=, &programs](PassContext& c) {
+        c.state({});
         c.drawTo({tiles});
         Program& p = programs["water tiles"];
         p.use();
@@ -194,6 +198,7 @@ void addView(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, con
     }
     graph.pass("view", {{d.frame, Usage::uniform}, of.tiles, of.depth, of.thickness, d.colour, d.depth}, {of.colour},
                [=, &programs](PassContext& c) {
+                   c.state({});
                    c.drawTo({of.colour});
                    useFrame(c, d);
                    Program& p = programs["show view"];
@@ -229,10 +234,16 @@ ThicknessSize thicknessSize(const FluidDraw& d) {
 using Condition = std::shared_ptr<gpu::QueryName>;
 
 // Whether the scene has moved, within the tiles of the water, since the thickness that is kept was cut at it; the GPU alone finds out.
-Condition addSceneChanged(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle scene,
-                          TextureHandle changed) {
-    const auto query = std::make_shared<gpu::QueryName>();
+Condition addSceneChanged(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, const Kept& kept,
+                          TextureHandle scene, TextureHandle changed) {
+    if (!kept->changed) {
+        GLuint name = 0;
+        glGenQueries(1, &name);
+        kept->changed = gpu::QueryName(name);
+    }
+    const Condition query(kept, &kept->changed);
     graph.pass("thickness", {{d.frame, Usage::uniform}, d.depth, scene, tiles}, {changed}, [=, &programs](PassContext& c) {
+        c.state({});
         c.drawTo({changed});
         useFrame(c, d);
         Program& p = programs["scene at, changed"];
@@ -240,10 +251,7 @@ Condition addSceneChanged(FrameGraph& graph, FluidPrograms& programs, const Flui
         p.texture("sceneDepth", 0, c.texture(d.depth));
         p.texture("kept", 1, c.texture(scene));
         p.set("scale", thicknessSize(d).scale);
-        GLuint name = 0;
-        glGenQueries(1, &name);
-        *query = gpu::QueryName(name);
-        glBeginQuery(GL_ANY_SAMPLES_PASSED, name);
+        glBeginQuery(GL_ANY_SAMPLES_PASSED, query->name());
         programs.drawTiles(p, c.texture(tiles), 2);
         glEndQuery(GL_ANY_SAMPLES_PASSED);
     });
@@ -274,8 +282,7 @@ void addThicknessOf(FrameGraph& graph, FluidPrograms& programs, const FluidDraw&
         if (to.clears) target.clearColour(vec4(0.0F), 0);
         if (to.clears && ink) target.clearColour(vec4(0.0F), 1);
         useFrame(c, d);
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE);
+        c.state({.blendTarget = GL_ONE});
         Program& p = programs.splat(ink ? "thickness, ink" : "thickness", d.fluid);
         p.use();
         if (ink) p.set("ownAbsorption", vec4(d.look.absorption, d.look.scattering.y));
@@ -302,12 +309,13 @@ ThicknessInto addKeptThickness(FrameGraph& graph, FluidPrograms& programs, const
         TextureDesc flags = size.thickness;
         flags.format = Format::r8;
         to.changed = graph.texture("scene changed", flags);
-        to.condition = addSceneChanged(graph, programs, d, tiles, scene, to.changed);
+        to.condition = addSceneChanged(graph, programs, d, tiles, kept, scene, to.changed);
     }
     addThicknessOf(graph, programs, d, to);
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, d.depth};
     if (to.changed) reads.emplace_back(to.changed);
     graph.pass("thickness", reads, {scene}, [=, &programs, condition = to.condition](PassContext& c) {
+        c.state({});
         c.drawTo({scene});
         useFrame(c, d);
         if (condition) glBeginConditionalRender(condition->name(), GL_QUERY_WAIT);
@@ -433,8 +441,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
             const gpu::Framebuffer& target = c.drawTo({into});
             if (clears) target.clearColour(vec4(0.0F));
             useFrame(c, d);
-            glEnable(GL_BLEND);
-            glBlendFunc(GL_ONE, GL_ONE);
+            c.state({.blendTarget = GL_ONE});
             Program& p = programs["light water"];
             p.use();
             const float radius = wider * some.larger * clipRadius;
@@ -455,6 +462,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         const TextureHandle to = graph.texture("water light", map);
         Program& p = programs[fmt::format("light water blur{}, {}", d.look.caustics ? ", wide" : "", first ? "first" : "last")];
         graph.pass("water light blur", {from}, {to}, [=, &p](PassContext& c) {
+            c.state({});
             c.drawTo({to});
             p.use();
             p.texture("source", 0, c.texture(from));
@@ -483,6 +491,7 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
         return {colour, water.depth};
     }
     graph.pass("shade", reads, {colour}, [=, &programs](PassContext& c) {
+        c.state({});
         c.drawTo({colour});
         useFrame(c, d);
         Program& p = programs[water.normals ? (ink ? "shade, normals, ink" : "shade, normals") : ink ? "shade, ink" : "shade"];

@@ -32,8 +32,7 @@ void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
     graph.pass("spray", reads, {layers.colour}, [=, &programs](gpu::PassContext& c) {
         c.drawTo({layers.colour});
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        c.state({.blendSource = GL_SRC_ALPHA, .blendTarget = GL_ONE_MINUS_SRC_ALPHA});
         gpu::Program& p = programs[ink ? "spray, ink" : "spray"];
         p.use();
         p.set("radius", d.fluid.radius);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "engine/core/readable_bytes.h"
 #include "engine/gpu/host_state.h"
@@ -34,10 +33,9 @@ struct WaterRenderer::Impl {
 Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
     ShaderFiles files = ShaderFiles::developer();
     files.define({"ENVIRONMENT_MAP", "1"});
-    std::optional<HdrImage> made;
-    if (options.surroundings == nullptr) made = makeSky(options.sky);
-    const HdrImage& around = made ? *made : *options.surroundings;
-    const Environment filtered = cachedEnvironment(around, DiskCache(cacheFolder("surroundings"), options.log));
+    const DiskCache cache(cacheFolder("surroundings"), options.log);
+    const Environment filtered =
+        options.surroundings != nullptr ? cachedEnvironment(*options.surroundings, cache) : cachedEnvironment(options.sky, cache);
     Result<gpu::Texture> map = makeEnvironmentMap(filtered);
     if (!map) return map.error();
     surroundings = std::move(*map);
@@ -124,6 +122,14 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
     return ok();
 }
 
+namespace {
+
+bool isEmpty(const FluidView& fluid) { return fluid.count == 0 && fluid.foamCount == 0 && fluid.dropCount == 0 && fluid.pendantCount == 0; }
+// Whether it is a row of the table, whose passes change only what HostState::rivulets saves.
+bool isOurs(const RendererRow* row) { return row == nullptr || renderers().find(row->name) == row; }
+
+}  // namespace
+
 WaterRenderer::WaterRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 WaterRenderer::~WaterRenderer() = default;
@@ -139,13 +145,18 @@ Result<std::unique_ptr<WaterRenderer>> WaterRenderer::create(const WaterRenderer
 
 Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
                            const RendererRow* row) {
+    if (isEmpty(fluid)) return ok();
+    const gpu::HostState scope(isOurs(row) ? gpu::HostState::rivulets : gpu::HostState::everything);
+    return draw(scope, view, fluid, look, target, row);
+}
+
+Status WaterRenderer::draw(const gpu::HostState& scope, const FrameView& view, const FluidView& fluid, const FluidLook& look,
+                           const HostTarget& target, const RendererRow* row) {
     if (Status fits = impl_->fluid.fits(fluid); !fits) return fits;
-    if (fluid.count == 0 && fluid.foamCount == 0 && fluid.dropCount == 0 && fluid.pendantCount == 0) return ok();
+    if (isEmpty(fluid)) return ok();
     if (Status can = HostPicture::nothingUnderWay(); !can) return can;
-    const HostDepth depth = HostDepth::current();
-    const gpu::HostState keep;
     impl_->picture.limit(impl_->most - impl_->ownBytes());
-    if (Status taken = impl_->picture.take(target, depth, view); !taken) return taken;
+    if (Status taken = impl_->picture.take(target, scope.depth(), view); !taken) return taken;
     const RendererRow& by = row != nullptr ? *row : *renderers().find(FluidLookParams().renderer);
     Status drawn = impl_->draw(fluid, look, by);
     if (!drawn && impl_->fluid.kept.bytes() > 0) {  // what is kept only saves time: it gives way to the pictures of this frame

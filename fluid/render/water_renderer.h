@@ -23,6 +23,9 @@
 namespace rivulet {
 
 struct RendererRow;  // fluid/render/renderers.h
+namespace gpu {
+class HostState;  // engine/gpu/host_state.h
+}
 
 struct WaterRendererOptions {
     // Reflected by the water beside the picture itself: a map of the surroundings (read once; radiance in the target's units); null: `sky`.
@@ -41,11 +44,16 @@ class WaterRenderer {
     WaterRenderer& operator=(const WaterRenderer&) = delete;
 
     // Draws over the picture in `target`: nearer surfaces hide the water, farther ones are seen through it, refracted. Colours and depths
-    // change only where there is water. `view.width` and `height` are the target's; `view.projection` is the one that the target's
-    // depth was drawn with, in any depth mode of glClipControl, reversed or not; nearPlane and farPlane (m) are finite and enclose the
-    // scene. Light is in the target's units: in an srgb target, 1 is white. `row`: a row of renderers(), or one of the host; null: the
-    // water's surface. Error: (badInput) a condition above that does not hold; (failed) out of memory.
+    // change only where there is water. `view.view` and `projection` are those that the target's depth was drawn with: a perspective or an
+    // orthographic projection, in any mode of glClipControl, reversed or not, right- or left-handed, mirrored or not, with an oblique near
+    // plane or not. nearPlane and farPlane are finite and enclose the scene. All are in the host's unit of length, of which
+    // `view.unitsPerMetre` are a metre; cameraPosWorld, width and height are not read. Light is in the target's units: in an srgb target, 1
+    // is white. `row`: a row of renderers(), or one of the host; null: the water's surface. Error: (badInput) a condition above that does
+    // not hold; (failed) out of memory.
     Status draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
+                const RendererRow* row = nullptr);
+    // The same within a scope of HostState that the host holds, around several calls: state is saved once.
+    Status draw(const gpu::HostState& scope, const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
                 const RendererRow* row = nullptr);
 
     const std::vector<PassTime>& times() const;  // GPU ms a pass, two or three frames late

@@ -10,7 +10,7 @@ uniform sampler2D occlusion;
 #endif
 layout(location = 0) out vec4 colour;
 void main() {
-    vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy)), dir = normalize(ray);
+    vec3 ray = directionToWorld(sightWay(gl_FragCoord.xy)), dir = normalize(ray);
     colour = vec4(skyGradient(dir), 1.0);
 #if defined(FLOOR)
     vec3 posWorld = frame.cameraPos.xyz + (frame.floorColour.w - frame.cameraPos.y) / ray.y * ray;

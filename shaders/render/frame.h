@@ -15,7 +15,7 @@ STRUCT(FrameParams) {
     mat4 waterProjection;   // world -> clip of the light's map of the water
     vec4 cameraPos;         // m, world; w = time, s
     vec4 viewport;          // width, height (pixels), 1/width, 1/height
-    vec4 ray;               // view direction (z = -1) of pixel p: p * ray.xy + ray.zw
+    vec4 ray;               // slope (x, y a metre of depth) of pixel p's line of sight: p * ray.xy + ray.zw; orthographic: its x, y, m
     vec4 planes;            // near, far (m), projection[2][2], projection[3][2]
     vec4 lightDir;          // unit, world, towards the light
     vec4 lightColour;       // linear radiance

@@ -6,7 +6,7 @@ layout(location = 0) out vec2 openDepth;  // openness 0..1, and the depth, m
 const int kTaps = 8;
 vec3 at(ivec2 p) {
     p = clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1);
-    return viewRay(vec2(p) + 0.5) * depthOfWindow(texelFetch(sceneDepth, p, 0).r);
+    return placeAt(vec2(p) + 0.5, depthOfWindow(texelFetch(sceneDepth, p, 0).r));
 }
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy) * 2;

@@ -7,7 +7,7 @@ uniform float range;   // m, two standard deviations in depth
 uniform float most;    // pixels either side
 void main() {
     float z = begin();
-    float pixels = min(reach / (z * frame.ray.y), most);
+    float pixels = min(reach / pixelSize(z).y, most);
     float across = 2.0 / max(pixels * pixels, 1.0e-6), inDepth = 2.0 / (range * range);
     float sum = z, weights = 1.0;
     for (int k = 1; float(k) <= pixels && z < kFar; ++k) {

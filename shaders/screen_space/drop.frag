@@ -11,9 +11,9 @@ layout(location = 0) out vec4 colour;
 void main() {
     float radius = centreView.w;
     vec2 off = vec2(sign(place.x) * max(abs(place.x) - wayView.w, 0.0), place.y) / radius;
-    float d = length(off), pixel = -centreView.z * frame.ray.x / radius;
+    float d = length(off), pixel = pixelSize(-centreView.z).x / radius;
     float cover = 1.0 - smoothstep(1.0 - pixel, 1.0 + pixel, d);
-    vec3 toEye = -normalize(centreView.xyz), across = cross(toEye, wayView.xyz);
+    vec3 toEye = towardsEye(centreView.xyz), across = cross(toEye, wayView.xyz);
     float nv = sqrt(max(1.0 - d * d, 0.0));
     float depth = -centreView.z - radius * nv;
     if (cover <= 0.0 || isHidden(depth)) discard;

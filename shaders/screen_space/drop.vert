@@ -11,9 +11,9 @@ void main() {
     vec4 drop = texelFetch(drops, 2 * row()), velocity = texelFetch(drops, 2 * row() + 1);
     vec3 c = (frame.view * vec4(drop.xyz, 1.0)).xyz, v = mat3(frame.view) * velocity.xyz;
     float depth = -c.z;
-    vec3 toEye = -normalize(c);
+    vec3 toEye = towardsEye(c);
     vec3 seen = v - toEye * dot(v, toEye);  // velocity perpendicular to the line of sight
-    float speed = length(seen), least = 0.6 * depth * frame.ray.x;
+    float speed = length(seen), least = 0.6 * pixelSize(depth).x;
     vec3 along = speed > 1.0e-6 ? seen / speed : normalize(cross(toEye, vec3(0.31, 0.95, 0.0)));
     float radius = max(drop.w, least), way = 0.5 * speed * shutter;
     // The opacity is the share of the exposure time that the drop spends at a point.

@@ -14,8 +14,9 @@ float begin() {
 // The depths at which the ray through a pixel enters and leaves the box; x > y: it misses. `slant`: m that it moves away from the wall by
 // which it enters, for a metre of depth.
 vec2 throughBox(vec2 pixel, out float slant) {
-    vec3 ray = directionToWorld(viewRay(pixel));
-    vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;
+    vec3 ray = directionToWorld(sightWay(pixel)), from = frame.cameraPos.xyz + directionToWorld(sightFrom(pixel));
+    ray = mix(ray, vec3(1.0e-9), lessThan(abs(ray), vec3(1.0e-9)));  // along a wall
+    vec3 a = (low - from) / ray, b = (high - from) / ray;
     vec3 enter = min(a, b), leave = max(a, b), away = abs(ray);
     float entry = max(max(enter.x, enter.y), enter.z);
     slant = entry == enter.x ? away.x : entry == enter.y ? away.y : away.z;

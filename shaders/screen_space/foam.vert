@@ -17,9 +17,9 @@ void main() {
     float kind = floor(velocity.w);
     bool foam = kind == 2.0;
     float r = radius * fract(velocity.w) * (kind == 1.0 ? 0.6 : foam ? 2.6 : 0.8);
-    vec3 c = (frame.view * vec4(fleck.xyz, 1.0)).xyz, toEye = -normalize(c);
+    vec3 c = (frame.view * vec4(fleck.xyz, 1.0)).xyz, toEye = towardsEye(c);
     depth = -c.z;
-    float pixel = depth * frame.ray.x;
+    float pixel = pixelSize(depth).x;
     // A particle smaller than a pixel has a lower opacity.
     float drawn = max(r, 0.7 * pixel), share = (r / drawn) * (r / drawn);
     vec3 seen = mat3(frame.view) * velocity.xyz;

@@ -65,11 +65,11 @@ void main() {
     }
     votes = vote(own);
     // In whole pixels; the weight is reduced so that the variance equals that of the step, at every distance and resolution.
-    float pixels = min(step_ / (z * frame.ray.y), maxStep);
+    float pixels = min(step_ / pixelSize(z).y, maxStep);
     int k = max(int(ceil(pixels)), 1);
     float side = 0.25 * pixels * pixels / float(k * k), centre = 1.0 - 2.0 * side;
     for (int i = 0; i < 9; ++i) around[i] = at(here + k * (ivec2(i % 3, i / 3) - 1));
-    vec3 place = frame.cameraPos.xyz + directionToWorld(viewRay(gl_FragCoord.xy)) * z, walls = min(place - low, high - place);
+    vec3 place = frame.cameraPos.xyz + directionToWorld(placeAt(gl_FragCoord.xy, z)), walls = min(place - low, high - place);
     curved = min(min(walls.x, walls.y), walls.z) < 5.0 * bend ? 0.0 : bend;
     sum = centre * centre * z;  // the weights' sum is 1
     addPair(around[5], around[3], side * centre);

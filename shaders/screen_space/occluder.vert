@@ -15,7 +15,7 @@ void main() {
     inner *= 1.0 - leaving(particle);
     float side = 1.40 * inner;  // half of it: 0.70 radii < 1 / sqrt(2)
     if (asPoint()) {
-        float pixels = side * min(abs(frame.projection[0][0]) * pointTarget.x, abs(frame.projection[1][1]) * pointTarget.y) * 0.5 / -c.z;
+        float pixels = side * min(abs(frame.projection[0][0]) * pointTarget.x, abs(frame.projection[1][1]) * pointTarget.y) * 0.5 / spreadAt(-c.z);
         gl_PointSize = max(pixels - 1.0, 1.0);  // rounded down, however the GPU rounds
         if (pixels < 2.0) inner = 0.0;
     } else {

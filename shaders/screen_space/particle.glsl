@@ -31,7 +31,7 @@ float ownRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
 // Returns the number of particles that this one represents: 1 where all are drawn, 0 where others represent it.
 const float kFades = 0.25, kFewest = 1.0 / 64.0;
 float representedBy(vec4 p, uint id) {
-    float depth = max(-(frame.view * vec4(p.xyz, 1.0)).z, frame.planes.x), pixels = ownRadius(p) / (depth * frame.ray.y);
+    float depth = max(-(frame.view * vec4(p.xyz, 1.0)).z, frame.planes.x), pixels = ownRadius(p) / pixelSize(depth).y;
     if (!(pixels < detail)) return 1.0;
     float share = max(pixels * pixels / (detail * detail), kFewest);
     float at = float((id * 2654435769u) >> 8) / 16777216.0 * (1.0 - kFades) / share;
@@ -73,16 +73,17 @@ Splat splatOf(vec4 p) {
     return s;
 }
 
-// Slopes (x / depth) between which it is seen along one axis: its two tangents through the origin.
+// Slopes (x / depth) between which it is seen along one axis: its two tangents through the origin. Orthographic: x, m.
 vec2 tangents(float c, float depth, float cc, float cz, float zz) {
+    if (parallel() > 0.0) return c + vec2(-1.0, 1.0) * sqrt(cc);
     float a = depth * depth - zz, b = -c * depth - cz, t = sqrt(max(b * b - a * (c * c - cc), 0.0));
     return vec2(-b - t, -b + t) / a;
 }
 
-// Clip position of a point that covers the rectangle of the slopes `low` to `high` at `depth`, m. It covers what of it is within the
+// Clip position of a point that covers the rectangle of the slopes (orthographic: m) `low` to `high` at `depth`, m. It covers what of it is within the
 // picture: a point whose centre lies outside is not drawn.
 vec4 pointOver(vec2 low, vec2 high, float depth) {
-    vec4 a = frame.projection * vec4(low * depth, -depth, 1.0), b = frame.projection * vec4(high * depth, -depth, 1.0);
+    vec4 a = frame.projection * vec4(low * spreadAt(depth), -depth, 1.0), b = frame.projection * vec4(high * spreadAt(depth), -depth, 1.0);
     vec2 from = max(min(a.xy, b.xy) / a.w, vec2(-1.0)), to = min(max(a.xy, b.xy) / a.w, vec2(1.0));
     if (from.x >= to.x || from.y >= to.y) return kNowhere;
     vec2 pixels = (to - from) * 0.5 * pointTarget;
@@ -104,10 +105,10 @@ vec4 splatQuad(Splat s) {
         high = vec2(x.y, y.y);
     } else {  // a box about it, from the near plane on
         vec2 wide = sqrt(vec2(s.squares[0][0], s.squares[1][1])), a = s.centre.xy - wide, b = s.centre.xy + wide;
-        low = min(a / near, a / (depth + ahead));
-        high = max(b / near, b / (depth + ahead));
+        low = min(a / spreadAt(near), a / spreadAt(depth + ahead));
+        high = max(b / spreadAt(near), b / spreadAt(depth + ahead));
         front = near;
     }
     if (asPoint()) return pointOver(low, high, front);
-    return frame.projection * vec4(mix(low, high, corner()) * front, -front, 1.0);
+    return frame.projection * vec4(mix(low, high, corner()) * spreadAt(front), -front, 1.0);
 }

@@ -98,14 +98,14 @@ vec3 seenInside(vec3 from, vec3 way, float radius, float depth) {
 }
 
 void main() {
-    vec3 sight = normalize(through), top = centreLine(drop, PENDANT_ABOVE), tip = centreLine(drop, 1.0), middle = 0.5 * (top + tip);
-    float radius = 1.15 * length(vec2(0.5 * distance(top, tip), drop.lean.w)), start = max(dot(middle, sight) - radius, 0.0);
-    float near, unused, at = meets(sight * start, sight, 2.0 * radius, 40, 1.0, near);
-    float pixel = -middle.z * frame.ray.x;
+    vec3 eye = sightFrom(through), sight = -towardsEye(through), top = centreLine(drop, PENDANT_ABOVE), tip = centreLine(drop, 1.0), middle = 0.5 * (top + tip);
+    float radius = 1.15 * length(vec2(0.5 * distance(top, tip), drop.lean.w)), start = max(dot(middle - eye, sight) - radius, 0.0);
+    float near, unused, at = meets(eye + sight * start, sight, 2.0 * radius, 40, 1.0, near);
+    float pixel = pixelSize(-middle.z).x;
     float cover = at >= 0.0 ? 1.0 : 1.0 - near / pixel;
     if (cover <= 0.0) discard;
-    if (at < 0.0) at = max(dot(middle, sight) - start, 0.0);  // the edge of the drop, less than a pixel off
-    vec3 p = sight * (start + at);
+    if (at < 0.0) at = max(dot(middle - eye, sight) - start, 0.0);  // the edge of the drop, less than a pixel off
+    vec3 p = eye + sight * (start + at);
     float depth = -p.z;
     if (isHidden(depth)) discard;
     gl_FragDepth = windowOfDepth(cover > 0.5 ? depth : depthBehind());

@@ -18,7 +18,7 @@ void main() {
     vec3 top = p.foot.xyz + p.axis.xyz * (PENDANT_ABOVE * p.foot.w), tip = centreLine(p, 1.0);
     vec3 middle = 0.5 * (top + tip);
     float radius = length(vec2(0.5 * distance(top, tip), p.lean.w));
-    vec3 toEye = -normalize(middle), right = normalize(cross(vec3(0.0, 1.0, 0.0), toEye)), up = cross(toEye, right);
+    vec3 toEye = towardsEye(middle), right = normalize(cross(vec3(0.0, 1.0, 0.0), toEye)), up = cross(toEye, right);
     vec2 off = (corner() * 2.0 - 1.0) * 1.1 * radius;
     through = middle + toEye * radius + right * off.x + up * off.y;
     gl_Position = !beyond() && -middle.z - radius > frame.planes.x ? frame.projection * vec4(through, 1.0) : kNowhere;

@@ -11,6 +11,6 @@ void main() {
     float depth, through;
     if (!hitSphere(gl_FragCoord.xy, centreView.xyz, centreView.w, depth, through)) discard;
     gl_FragDepth = windowOfDepth(depth);
-    normal = (viewRay(gl_FragCoord.xy).xy * depth - centreView.xy) / centreView.w;
+    normal = (placeAt(gl_FragCoord.xy, depth).xy - centreView.xy) / centreView.w;
     surface = vec4(sqrt(baseColour), 1.0);  // even steps of brightness in 8 bits
 }

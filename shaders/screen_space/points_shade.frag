@@ -12,8 +12,8 @@ void main() {
     vec4 base = texelFetch(surface, here, 0);
     if (base.a == 0.0) discard;
     vec2 xy = texelFetch(normal, here, 0).rg;
-    vec3 p = viewRay(gl_FragCoord.xy) * depthOfWindow(texelFetch(depth, here, 0).r);
+    vec3 p = placeAt(gl_FragCoord.xy, depthOfWindow(texelFetch(depth, here, 0).r));
     vec3 n = directionToWorld(vec3(xy, sqrt(max(1.0 - dot(xy, xy), 0.0))));
     vec3 light = frame.lightColour.rgb * meshShadow(toWorld(p), n);
-    colour = vec4(shadeSurface(Surface(base.rgb * base.rgb, 0.45, 0.0, n, 1.0), directionToWorld(-normalize(p)), light), 1.0);
+    colour = vec4(shadeSurface(Surface(base.rgb * base.rgb, 0.45, 0.0, n, 1.0), directionToWorld(towardsEye(p)), light), 1.0);
 }

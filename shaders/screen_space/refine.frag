@@ -24,8 +24,13 @@ void main() {
     }
     depth = kFar;
     if (water < 0.5) return;
-    // On a plane, 1 / depth is linear in the image. Texels of other surfaces are replaced by the centre value.
+    // On a plane, 1 / depth is linear in a perspective image, and depth in an orthographic one. Texels of other surfaces are replaced by
+    // the centre value.
     float sum = 0.0;
-    for (int k = 0; k < 9; ++k) sum += wx[k % 3] * wy[k / 3] / (abs(z[k] - mine) < range ? z[k] : mine);
-    depth = 1.0 / sum;
+    bool straight = parallel() > 0.0;
+    for (int k = 0; k < 9; ++k) {
+        float own = abs(z[k] - mine) < range ? z[k] : mine;
+        sum += wx[k % 3] * wy[k / 3] * (straight ? own : 1.0 / own);
+    }
+    depth = straight ? sum : 1.0 / sum;
 }

@@ -43,7 +43,7 @@ float coverage(float water) {
 #endif
 }
 float surfaceDepth(ivec2 p) { return texelFetch(fluidDepth, clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r; }
-vec3 surfaceAt(ivec2 p, float depth) { return viewRay(vec2(p) + 0.5) * depth; }
+vec3 surfaceAt(ivec2 p, float depth) { return placeAt(vec2(p) + 0.5, depth); }
 
 const vec2 kCrease = vec2(0.15, 0.25);  // of a normal that turns so much from pixel to pixel, each side is looked at
 
@@ -134,7 +134,7 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
 // honey's index is about this; that of others is nearer to water's, and they are cloudy.
 const float kOtherIndex = 1.47;
 vec2 otherLiquid(float depth) {
-    vec2 texel = 1.0 / vec2(textureSize(thickness, 0)), uv = gl_FragCoord.xy * frame.viewport.zw, pixel = depth * frame.ray.xy * frame.viewport.xy * texel;
+    vec2 texel = 1.0 / vec2(textureSize(thickness, 0)), uv = gl_FragCoord.xy * frame.viewport.zw, pixel = pixelSize(depth) * frame.viewport.xy * texel;
     vec2 ahead = vec2(texture(thickness, uv + vec2(texel.x, 0.0)).y, texture(thickness, uv + vec2(0.0, texel.y)).y);
     vec2 back = vec2(texture(thickness, uv - vec2(texel.x, 0.0)).y, texture(thickness, uv - vec2(0.0, texel.y)).y);
     vec2 slope = (ahead - back) / (2.0 * pixel);
@@ -174,7 +174,7 @@ vec3 shafts(vec3 dir, float through, vec3 absorbed, vec3 reduced) {
 }
 
 // For an eye inside the water: the point where the ray through a pixel leaves it, m, view space.
-vec3 wayOut(vec2 pixel) { return normalize(viewRay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
+vec3 wayOut(vec2 pixel) { return normalize(sightWay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
 // The picture for an eye in the water: the scene in the water directly, the scene above through Snell's window, and around the window what
 // the surface mirrors. `scene`: m along the ray; `passed`: the share of light that comes as far as the surface; `deep`: the colour of very deep
 // water.
@@ -214,15 +214,15 @@ void main() {
     if (depth >= behind) return;
 
     vec3 p = surfaceAt(here, depth);
-    vec3 toEye = -normalize(p);
+    vec3 toEye = towardsEye(p);
     vec2 turn;
 #if defined(NORMALS)
     float fringe = 0.0;
 #else
     float fringe = 1.0 - smoothstep(3.0 * spacing, 5.0 * spacing, water);
 #endif
-    vec3 right = slope(here, ivec2(1, 0), p, depth * frame.ray.x, fringe, turn.x);
-    vec3 up = slope(here, ivec2(0, 1), p, depth * frame.ray.y, fringe, turn.y);
+    vec3 right = slope(here, ivec2(1, 0), p, pixelSize(depth).x, fringe, turn.x);
+    vec3 up = slope(here, ivec2(0, 1), p, pixelSize(depth).y, fringe, turn.y);
 #if defined(NORMALS)
     vec3 n = texelFetch(normals, here, 0).xyz;
 #else
@@ -241,7 +241,8 @@ void main() {
     bent = normalize(bent + vec3((kOtherIndex / refractiveIndex - 1.0) * lens, 0.0));
 #endif
     vec3 back = colour.rgb;
-    float air = clamp((behind - depth) * length(p) / depth - through, 0.0, 60.0 * radius);
+    float slant = length(sightWay(gl_FragCoord.xy));  // m along the line of sight, of a metre of depth
+    float air = clamp((behind - depth) * slant - through, 0.0, 60.0 * radius);
     vec3 way = bent * through + 0.5 * (bent - toEye) * air;
     float stretch = 1.0;
     for (int k = 0; k < 3; ++k) {
@@ -277,12 +278,13 @@ void main() {
     vec3 scattered = returned * glow + max(diffuse - passed, 0.0) * mix(above, rear, cloudy);
     vec3 transmitted = back * passed + scattered;
     float under = 1.0 - smoothstep(frame.planes.x + 0.5 * radius, frame.planes.x + 2.5 * radius, depth);  // the eye is in the water
+    under *= 1.0 - parallel();  // there is no eye
     vec3 within = vec3(0.0);
     if (under > 0.0) {
         vec3 deep = layer(40.0 * absorbed, 40.0 * thrown, diffuse) * glow;  // backscatter of very deep liquid
         vec3 straight = texelFetch(sceneColour, here, 0).rgb;
-        within = fromWithin(-toEye, water, behind * length(p) / depth, straight, passed, deep) * passed + scattered;
-        if (shaftSteps > 0) within += shafts(-toEye, min(water, behind * length(p) / depth), absorbed / max(through, 1.0e-3), thrown / max(through, 1.0e-3));
+        within = fromWithin(-toEye, water, behind * slant, straight, passed, deep) * passed + scattered;
+        if (shaftSteps > 0) within += shafts(-toEye, min(water, behind * slant), absorbed / max(through, 1.0e-3), thrown / max(through, 1.0e-3));
     }
 
     // Where the normal varies within a pixel, the reflection is blurred, to avoid aliasing.

@@ -12,7 +12,7 @@ layout(location = 0) out vec4 colour;
 
 vec3 pointAt(ivec2 p) {
     p = clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1);
-    return viewRay(vec2(p) + 0.5) * texelFetch(fluidDepth, p, 0).r;
+    return placeAt(vec2(p) + 0.5, texelFetch(fluidDepth, p, 0).r);
 }
 // The nearer side of a pixel.
 vec3 side(ivec2 here, ivec2 step_) {

@@ -23,9 +23,10 @@ layout(location = 0) out vec4 colour;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    float depth = -centreView.z, pixel = depth * abs(frame.ray.x);
-    vec3 toEye = -normalize(centreView), across = cross(toEye, alongView), ray = viewRay(gl_FragCoord.xy);
-    vec3 off_ = ray * (dot(centreView, toEye) / dot(ray, toEye)) - centreView;
+    float depth = -centreView.z, pixel = pixelSize(depth).x;
+    vec3 toEye = towardsEye(centreView), across = cross(toEye, alongView), ray = sightWay(gl_FragCoord.xy);
+    vec3 off_ = sightFrom(gl_FragCoord.xy) - centreView;
+    off_ -= ray * (dot(off_, toEye) / dot(ray, toEye));
     vec2 place = vec2(dot(off_, alongView), dot(off_, across));  // m, along the path and across
     // Within half a spacing of what hides it, it fades.
     float hider = min(depthOfWindow(texelFetch(sceneDepth, here, 0).r), texelFetch(waterDepth, here, 0).r);

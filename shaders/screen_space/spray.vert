@@ -38,8 +38,8 @@ void main() {
     if (lost(particle) || gone <= 0.0) return;
     vec3 c = (frame.view * vec4(particle.xyz, 1.0)).xyz, v = vec3(0.0);
     if (shutter > 0.0) v = mat3(frame.view) * texelFetch(velocities, row()).xyz;
-    float depth = -c.z, pixel = depth * abs(frame.ray.x);
-    vec3 toEye = -normalize(c), seen = v - toEye * dot(v, toEye);
+    float depth = -c.z, pixel = pixelSize(depth).x;
+    vec3 toEye = towardsEye(c), seen = v - toEye * dot(v, toEye);
     float speed = length(seen), path = min(0.5 * speed * shutter, longest * pixel);  // m, half of it
     vec3 along = speed > 1.0e-6 ? seen / speed : normalize(cross(toEye, vec3(0.31, 0.95, 0.0))), across = cross(toEye, along);
     float far_ = 0.0, wide = 0.0;
@@ -72,7 +72,7 @@ void main() {
         vec2 low = vec2(1.0e9), high = -low;
         for (int k = 0; k < 4; ++k) {
             vec3 at = c + along * (float(k & 1) * 2.0 - 1.0) * margin.x + across * (float(k >> 1) * 2.0 - 1.0) * margin.y;
-            vec2 slope = at.xy / max(-at.z, frame.planes.x);
+            vec2 slope = at.xy / spreadAt(max(-at.z, frame.planes.x));
             low = min(low, slope);
             high = max(high, slope);
         }

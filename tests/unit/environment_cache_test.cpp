@@ -45,6 +45,21 @@ TEST(EnvironmentCache, ACachedResultIsIdenticalBitForBit) {
     EXPECT_EQ(scratch.contents().size(), 2U);
 }
 
+// A sky is kept by its look: it is not made again to ask for it.
+TEST(EnvironmentCache, ASkyIsKeptByItsLook) {
+    const Scratch scratch;
+    const DiskCache cache(scratch.path().string());
+    SkyLook look;
+    look.clouds = 0.3F;
+    const Environment made = prefiltered(makeSky(look));
+    EXPECT_TRUE(same(cachedEnvironment(look, cache), made)) << "made and kept";
+    EXPECT_TRUE(same(cachedEnvironment(look, cache), made)) << "read";
+    ASSERT_EQ(scratch.contents().size(), 1U);
+    look.horizon.y += 1.0e-6F;
+    EXPECT_TRUE(same(cachedEnvironment(look, cache), prefiltered(makeSky(look))));
+    EXPECT_EQ(scratch.contents().size(), 2U);
+}
+
 TEST(EnvironmentCache, ItIsTheCacheThatAnswers) {
     // A file that was of use is marked as used just now.
     const Scratch scratch;

@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <vector>
 
 #include "engine/render/frame_view.h"
+#include "fluid/render/fluid_view.h"
 #include "fluid/render/host_target.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/host_picture.h"
@@ -25,6 +27,8 @@ class HostScene {
         bool zeroToOne = false, reversed = false;
         int samples = 0, left = 0, bottom = 0;  // the viewport's place
         bool textures = true;                   // else renderbuffers
+        bool upperLeft = false;
+        std::function<void(FrameView&)> camera = {};  // changes the plain one into the host's
     };
 
     HostScene(int width, int height) : HostScene(width, height, Options{}) {}
@@ -43,18 +47,23 @@ class HostScene {
         const GLuint program = hostPicture();
         GLuint array = 0;
         glCreateVertexArrays(1, &array);
-        const FrameView v = view();
-        const mat4 clip = v.projection * v.view, back = glm::inverse(plain() * v.view);
+        glm::dmat4 exact = worldToClip();
+        if (o_.upperLeft)
+            for (int column = 0; column < 4; ++column) exact[column].y *= -1;
+        const mat4 clip(exact), back(glm::inverse(exact));
         const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
         glProgramUniformMatrix4fv(program, at("back"), 1, GL_FALSE, &back[0][0]);
-        mat4 told = clip;
-        glProgramUniformMatrix4fv(program, at("clip"), 1, GL_FALSE, &told[0][0]);
-        glProgramUniform3f(program, at("eye"), v.cameraPosWorld.x, v.cameraPosWorld.y, v.cameraPosWorld.z);
+        glProgramUniformMatrix4fv(program, at("clip"), 1, GL_FALSE, &clip[0][0]);
+        glProgramUniform2f(program, at("ends"),
+                           o_.reversed    ? 1.0F
+                           : o_.zeroToOne ? 0.0F
+                                          : -1.0F,
+                           o_.reversed ? 0.1F : 0.5F);  // clip z of two points
         glProgramUniform4f(program, at("place"), static_cast<float>(o_.left), static_cast<float>(o_.bottom), static_cast<float>(width_),
                            static_cast<float>(height_));
         glProgramUniform1i(program, at("zeroToOne"), o_.zeroToOne ? 1 : 0);
         glProgramUniform1i(program, at("isLinear"), o_.colour == GL_RGBA16F ? 1 : 0);
-        if (o_.zeroToOne) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+        glClipControl(o_.upperLeft ? GL_UPPER_LEFT : GL_LOWER_LEFT, o_.zeroToOne ? GL_ZERO_TO_ONE : GL_NEGATIVE_ONE_TO_ONE);
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
         glViewport(o_.left, o_.bottom, width_, height_);
         glEnable(GL_DEPTH_TEST);
@@ -81,7 +90,15 @@ class HostScene {
         v.lightColour = vec3(1.0F);
         v.projection = plain();
         if (o_.zeroToOne) v.projection = glm::perspectiveRH_ZO(0.9F, aspect(), o_.reversed ? 20.0F : 0.1F, o_.reversed ? 0.1F : 20.0F);
+        if (o_.camera) o_.camera(v);
         return v;
+    }
+    // Of metres, in double precision.
+    glm::dmat4 worldToClip() const {
+        const FrameView v = view();
+        glm::dmat4 world(double{v.unitsPerMetre});
+        world[3][3] = 1;
+        return glm::dmat4(v.projection) * glm::dmat4(v.view) * world;
     }
     HostTarget target() const { return {.framebuffer = framebuffer_, .x = o_.left, .y = o_.bottom, .width = width_, .height = height_}; }
 
@@ -99,14 +116,26 @@ class HostScene {
                 }
         return all;
     }
-    // m along the view axis; what is nothing far away.
+    // m along the view axis; what is nothing far away. Of a plain camera.
     std::vector<float> depths() const {
-        const GLuint from = resolved();
-        std::vector<float> all(static_cast<size_t>(width_) * static_cast<size_t>(height_));
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
-        glReadPixels(o_.left, o_.bottom, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, all.data());
+        std::vector<float> all = windowDepths();
         const mat4 p = view().projection;
         for (float& z : all) z = p[3][2] / ((o_.zeroToOne ? z : 2 * z - 1) + p[2][2]);
+        return all;
+    }
+    // m, world: what each pixel shows. Of any camera.
+    std::vector<vec3> places() const {
+        const std::vector<float> windows = windowDepths();
+        const glm::dmat4 back = glm::inverse(worldToClip());
+        std::vector<vec3> all;
+        all.reserve(windows.size());
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x) {
+                const double z = windows[all.size()], up = o_.upperLeft ? -1 : 1;
+                const glm::dvec4 at =
+                    back * glm::dvec4((2 * x + 1.0) / width_ - 1, up * ((2 * y + 1.0) / height_ - 1), o_.zeroToOne ? z : 2 * z - 1, 1);
+                all.emplace_back(glm::dvec3(at) / at.w);
+            }
         return all;
     }
 
@@ -133,6 +162,13 @@ class HostScene {
     }
 
   private:
+    std::vector<float> windowDepths() const {
+        const GLuint from = resolved();
+        std::vector<float> all(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
+        glReadPixels(o_.left, o_.bottom, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, all.data());
+        return all;
+    }
     float aspect() const { return static_cast<float>(width_) / static_cast<float>(height_); }
     mat4 plain() const { return glm::perspective(0.9F, aspect(), 0.1F, 20.0F); }
     void attach(GLenum where, GLenum format, int w, int h) {

@@ -16,7 +16,7 @@ inline GLuint hostPicture() {
     const std::string vertex =
         "#version 450\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0); }";
     const std::string fragment = R"(#version 450
-uniform mat4 back, clip; uniform vec3 eye; uniform vec4 place; uniform bool zeroToOne, isLinear;
+uniform mat4 back, clip; uniform vec4 place; uniform vec2 ends; uniform bool zeroToOne, isLinear; vec3 eye;
 layout(location = 0) out vec4 colour;
 float post(vec3 d, vec2 at, float r) {
     vec2 o = eye.xz - at; float a = dot(d.xz, d.xz), b = dot(o, d.xz), c = dot(o, o) - r * r, q = b * b - a * c;
@@ -25,7 +25,8 @@ float post(vec3 d, vec2 at, float r) {
 }
 void main() {
     vec2 uv = (gl_FragCoord.xy - place.xy) / place.zw * 2.0 - 1.0;
-    vec4 far = back * vec4(uv, 0.5, 1.0); vec3 d = normalize(far.xyz / far.w - eye);
+    vec4 a = back * vec4(uv, ends.x, 1.0), b_ = back * vec4(uv, ends.y, 1.0); eye = a.xyz / a.w;
+    vec3 d = normalize(b_.xyz * a.w - a.xyz * b_.w) * sign(a.w);  // b may be beyond infinity
     float t = d.y < 0.0 ? -eye.y / d.y : 1e9; vec3 c = vec3(0.3, 0.45, 0.6);
     vec3 p = eye + t * d;
     if (t < 1e8) c = mod(floor(8.0 * p.x) + floor(8.0 * p.z), 2.0) < 1.0 ? vec3(0.5, 0.48, 0.45) : vec3(0.2, 0.2, 0.22);
@@ -34,7 +35,7 @@ void main() {
     if (b < t) { t = b; c = vec3(0.1, 0.15, 0.7); }
     colour = vec4(isLinear ? c : mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), c)), 0.25);
     vec4 at = clip * vec4(eye + t * d, 1.0); float z = at.z / at.w;
-    gl_FragDepth = t > 1e8 ? (zeroToOne && clip[3][2] > 0.0 ? 0.0 : 1.0) : zeroToOne ? z : 0.5 * z + 0.5;
+    gl_FragDepth = t > 1e8 ? (ends.x > ends.y ? 0.0 : 1.0) : zeroToOne ? z : 0.5 * z + 0.5;
 })";
     for (const auto& [kind, text] : {std::pair(GL_VERTEX_SHADER, &vertex), std::pair(GL_FRAGMENT_SHADER, &fragment)}) {
         const GLuint shader = glCreateShader(static_cast<GLenum>(kind));

@@ -7,11 +7,13 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/app/context_egl.h"
 #include "engine/gpu/device_gl.h"
 #include "engine/gpu/load.h"
+#include "fluid/render/renderers.h"
 #include "fluid/render/water_renderer.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/gl_snapshot.h"
@@ -24,7 +26,10 @@ using testing::difference;
 using testing::GlSnapshot;
 using testing::glSnapshot;
 
-class HostStateIn : public ::testing::TestWithParam<bool> {};
+struct Host {
+    bool old, odd;  // a compatibility context; a host that left nothing at its default
+};
+class HostStateIn : public ::testing::TestWithParam<Host> {};
 
 GLuint textureOf(GLenum target) {
     GLuint name = 0;
@@ -131,20 +136,20 @@ void makeOdd(bool old) {
 }
 
 TEST_P(HostStateIn, IsPutBackToTheBit) {
-    Result<ContextEgl> context = ContextEgl::create({.compatibility = GetParam()});
+    Result<ContextEgl> context = ContextEgl::create({.compatibility = GetParam().old});
     if (!context) GTEST_SKIP() << context.error().message;
     ASSERT_TRUE(gpu::load(eglGetProcAddress));
     testing::HostScene host(80, 60);
-    makeOdd(GetParam());
+    if (GetParam().odd) makeOdd(GetParam().old);
     ASSERT_FALSE(HasFatalFailure());
     const GlSnapshot before = glSnapshot();
     EXPECT_GT(before.size(), 700U);
     {
         const gpu::HostState keep;
-        const gpu::HostState again;
+        const gpu::HostState again(gpu::HostState::everything);
         GLint on = glIsEnabled(GL_RASTERIZER_DISCARD);
         EXPECT_EQ(on, GL_FALSE);
-        if (GetParam()) {
+        if (GetParam().old) {
             GLfloat scale = 0, bias = 1;
             glGetFloatv(0x0D14, &scale);  // GL_RED_SCALE
             glGetFloatv(0x0D15, &bias);
@@ -174,6 +179,25 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
         const Status drawn = (*renderer)->draw(host.view(), testing::HostScene::viewOf(*world), {}, host.target());
         ASSERT_TRUE(drawn) << drawn.error().message;
         EXPECT_EQ(difference(before, glSnapshot()), "") << "draw()";
+        for (const char* name : {"points", "reference"}) {
+            const RendererRow* row = renderers().find(name);
+            ASSERT_TRUE((*renderer)->draw(host.view(), testing::HostScene::viewOf(*world), {}, host.target(), row));
+            EXPECT_EQ(difference(before, glSnapshot()), "") << name;
+        }
+        // Passes of a host may change anything.
+        const RendererRow row{"a host's", "messy", true, [](gpu::FrameGraph& graph, FluidPrograms&, const FluidDraw& d) -> FluidLayers {
+                                  graph.pass("messy", {}, {d.colour}, [colour = d.colour](gpu::PassContext& c) {
+                                      c.drawTo({colour}).clearColour(vec4(0.0F, 1.0F, 0.0F, 1.0F));
+                                      glEnable(GL_BLEND);
+                                      glBlendFunc(GL_DST_COLOR, GL_ONE);
+                                      glViewport(1, 2, 3, 4);
+                                      glEnable(GL_SCISSOR_TEST);
+                                      glBindTextures(0, 32, nullptr);
+                                  });
+                                  return {d.colour, {}};
+                              }};
+        ASSERT_TRUE((*renderer)->draw(host.view(), testing::HostScene::viewOf(*world), {}, host.target(), &row));
+        EXPECT_EQ(difference(before, glSnapshot()), "") << "a host's row";
         const gpu::HostState keep;
         world.reset();
     }
@@ -181,8 +205,10 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
     EXPECT_EQ(difference(before, glSnapshot()), "") << "the end";
 }
 
-INSTANTIATE_TEST_SUITE_P(Contexts, HostStateIn, ::testing::Bool(),
-                         [](const ::testing::TestParamInfo<bool>& old) { return old.param ? "compatibility" : "core"; });
+INSTANTIATE_TEST_SUITE_P(Contexts, HostStateIn, ::testing::Values(Host{false, false}, Host{false, true}, Host{true, true}),
+                         [](const ::testing::TestParamInfo<Host>& host) {
+                             return std::string(host.param.old ? "compatibility" : "core") + (host.param.odd ? "AndOdd" : "");
+                         });
 
 }  // namespace
 }  // namespace rivulet::host_state_test

@@ -114,6 +114,7 @@ void FluidWorld::setCells(std::span<const uint32_t> cells) {
 
 void FluidWorld::reset() {
     Impl& w = *impl_;
+    w.change();
     w.device->goOn();
     w.last = ok();
     w.changing = true;
@@ -147,6 +148,7 @@ void FluidWorld::withdraw(std::span<const uint32_t> slots) {
     Impl& w = *impl_;
     ASSERT(w.exchange.any(), "an exchange of water needs Sources::expectedDeposit > 0");
     if (slots.empty()) return;
+    w.change();
     w.invalidateCells();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);
@@ -160,6 +162,7 @@ void FluidWorld::withdraw(std::span<const uint32_t> slots) {
 }
 
 Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {
+    impl_->change();
     // A session sets them again whenever a slider moves, of the look too.
     if (impl_->solids.hasSurfaces(surfaces)) return ok();
     if (Status set = impl_->solids.setSurfaces(surfaces); !set) return set;
@@ -168,6 +171,7 @@ Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {
 }
 
 Status FluidWorld::setSources(const Sources& next) {
+    impl_->change();
     Impl& w = *impl_;
     std::vector<EmitterParams> emitters;
     emitters.reserve(next.emitters.size());
@@ -194,6 +198,7 @@ Status FluidWorld::Impl::prepareProbes(const FluidParams& next) {
 }
 
 Status FluidWorld::setParams(const FluidParams& params) {
+    impl_->change();
     if (Status s = checkParams("fluid", params); !s) return s;
     FluidParams next = params;
     const FluidParams& old = impl_->params;
@@ -245,7 +250,8 @@ ParticleView FluidWorld::particles() const {
             .foam = w.foam ? &w.foam->foam() : nullptr,
             .foamDrawn = w.foam ? &w.foam->drawn() : nullptr,
             .foamVelocity = w.foam ? &w.foam->velocity() : nullptr,
-            .foamSlots = w.foam ? w.foam->slots() : 0};
+            .foamSlots = w.foam ? w.foam->slots() : 0,
+            .revision = w.revision};
 }
 
 WetnessView FluidWorld::wetness() const {

@@ -61,6 +61,7 @@ Status FluidWorld::Impl::removeInside() {
     }
     hasFree = true;
     before.drained += inside.size();
+    change();
     if (sleep) sleep->slotsChange();
     grid->sortAsleep();
     fillLedger(*figures);

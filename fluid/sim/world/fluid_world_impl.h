@@ -46,6 +46,8 @@ struct WorldClock {
 };
 
 struct FluidWorld::Impl {
+    std::shared_ptr<const void> revision = std::make_shared<const char>();  // of ParticleView
+    void change() { revision = std::make_shared<const char>(); }
     Device* device = nullptr;
     FluidParams params;
     Log log;

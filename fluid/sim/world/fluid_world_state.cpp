@@ -58,6 +58,7 @@ void FluidWorld::save(WorldState& state) {
 
 Status FluidWorld::restore(WorldState& state) {
     Impl& w = *impl_;
+    w.change();
     if (Status can = w.bodies.savable(); !can) return can;
     // All of it is read and checked before anything changes.
     Result<std::string> params = state.takeText("world.params");
@@ -197,6 +198,8 @@ Status FluidWorld::restore(WorldState& state) {
 }
 
 Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes) {
+    impl_->change();
+    other.impl_->change();
     Impl &w = *impl_, &o = *other.impl_;
     if (Status whole = o.whole(); !whole) return whole;
     w.device->goOn();

@@ -136,6 +136,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.last = ok();
     w.device->poll();
     if (!(seconds > 0) || w.device->stopAsked()) return;
+    w.change();
     if (!(seconds <= kLongestFrame)) return w.report(checkInputs({}, seconds).error().message);
     if (w.last = w.whole(); !w.last) return w.report(w.last.error().message);
     w.device->goOn();  // another owner of buffers may have been interrupted

@@ -39,6 +39,7 @@ struct ParticleView {
     const Buffer* foamDrawn = nullptr;  // vec4: as foam, at the time of `drawn`
     const Buffer* foamVelocity = nullptr;
     uint32_t foamSlots = 0;
+    std::shared_ptr<const void> revision = {};  // the same object while all of these hold the same values; null: not known
 };
 
 }  // namespace rivulet

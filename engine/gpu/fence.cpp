@@ -2,8 +2,6 @@
 
 #include <rivulet_glad/gl.h>
 
-#include "engine/gpu/lost_context.h"
-
 namespace rivulet::gpu {
 
 Fence::~Fence() {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "engine/core/abi.h"
+#include "engine/gpu/lost_context.h"
 
 namespace rivulet::gpu {
 

@@ -1,13 +1,12 @@
 // GlObject: a move-only owner of a GL object name; Buffer, Texture, ... use it.
 //
 // Everything in engine/gpu needs a current OpenGL 4.5 context when it is created, used and destroyed; contexts that share objects count as
-// the same one. The headers do not include OpenGL: a host may use any loader. GL names and enumerants are `unsigned`.
-// Once the context has ended they are destroyed within a LostContext.
+// the same one. Once the context has ended it is destroyed within a LostContext. The headers do not include OpenGL: a host may use any
+// loader. GL names and enumerants are `unsigned`.
 #pragma once
 
 #include <utility>
 
-#include "engine/core/abi.h"
 #include "engine/gpu/lost_context.h"
 
 namespace rivulet::gpu {

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "host.h"
-#include "rivulet.h"
+#include <rivulet/rivulet.h>
 
 static rivulet_error why;
 static rivulet_context* context;

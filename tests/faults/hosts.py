@@ -16,7 +16,7 @@ def host(faults):
     """The path of the C program, compiled once."""
     path = os.path.join(faults.work, "host")
     if not os.path.exists(path):
-        subprocess.run(["cc", "-std=gnu11", "-O1", "-I", os.path.join(ROOT, "fluid", "capi"), "-I", os.path.join(ROOT, "tests", "embed", "c"),
+        subprocess.run(["cc", "-std=gnu11", "-O1", "-I", os.path.join(os.path.dirname(faults.library), "include"), "-I", os.path.join(ROOT, "tests", "embed", "c"),
                         os.path.join(HERE, "host.c"), faults.library, "-Wl,-rpath," + os.path.dirname(faults.library), "-lEGL", "-lGL", "-ldl",
                         "-o", path], check=True)
     return path

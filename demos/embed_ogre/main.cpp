@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "terrace.h"
 #include <rivulet/rivulet.h>
+#include "terrace.h"
 
 extern "C" void (*glXGetProcAddressARB(const unsigned char*))(void);
 

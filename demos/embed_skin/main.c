@@ -222,7 +222,7 @@ int main(int count, char** arguments) {
         glUniform1f(glGetUniformLocation(deform, "seconds"), (float)frame / 60);
         glDispatchCompute((VERTICES + 63) / 64, 1, 1);
 
-        if (frame == 1 && !dry) { /* after the first step, which takes the skin from its shape at rest to that of the host */
+        if (frame == 0 && !dry) { /* places on the mesh as it was given: the skin has this shape until its first step */
             done(rivulet_skin_add(skin, (const float[]){-0.024F, 0.012F, 0.02F}, 2, &why)); /* at uv (0.3, 0.6); it is held */
             done(rivulet_skin_add(skin, (const float[]){0.024F, 0.03F, 0.02F}, 14, &why));  /* at uv (0.7, 0.75); it runs */
         }

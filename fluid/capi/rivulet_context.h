@@ -6,7 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(__GNUC__)
+#if defined(_WIN32) && defined(rivulet_c_EXPORTS)
+#define RIVULET_API __declspec(dllexport)
+#elif defined(__GNUC__) && !defined(_WIN32)
 #define RIVULET_API __attribute__((visibility("default")))
 #else
 #define RIVULET_API

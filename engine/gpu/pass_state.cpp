@@ -1,5 +1,7 @@
 #include "engine/gpu/pass_state.h"
 
+#include <rivulet_glad/gl.h>
+
 namespace rivulet::gpu {
 
 namespace {

@@ -8,7 +8,7 @@ namespace rivulet::gpu {
 // What a pass draws with; the defaults are OpenGL's. Blending is on where it differs from them, in the first two colours.
 struct PassState {
     bool depthTest = false, depthWrites = true, colourWrites = true;
-    unsigned depthFunction = 0x0201;  // GL_LESS
+    unsigned depthFunction = 0x0201;                                    // GL_LESS
     unsigned blendSource = 1, blendTarget = 0, blendEquation = 0x8006;  // GL_ONE, GL_ZERO, GL_FUNC_ADD
     bool operator==(const PassState&) const = default;
 };

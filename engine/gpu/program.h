@@ -75,7 +75,7 @@ class Program {
     // What a uniform was last set to; longer values are set again each time.
     struct Uniform {
         int location = -1;  // -1: optimised away
-        size_t bytes = 0;     // 0: not known
+        size_t bytes = 0;   // 0: not known
         std::array<std::byte, sizeof(mat4)> value{};
     };
     Uniform& find(std::string_view uniform);

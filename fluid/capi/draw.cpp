@@ -33,7 +33,7 @@ Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& li
         return badInput(fmt::format("view.light_direction or view.light_colour is not finite, or beyond {}", kBrightest));
     Result<FluidLook> look = fluidLookOf(params, liquid);
     if (!look) return look.error();
-    WaterDraw draw{.view = {}, .look = std::move(*look), .target = {}, .row = renderers().find(params.renderer)};
+    WaterDraw draw{.view = {}, .look = *look, .target = {}, .row = renderers().find(params.renderer)};
     FrameView& frame = draw.view;
     frame.view = matrixOf(v.view);
     frame.projection = matrixOf(v.projection);

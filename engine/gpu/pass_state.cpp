@@ -2,6 +2,8 @@
 
 #include <rivulet_glad/gl.h>
 
+#include <initializer_list>
+
 namespace rivulet::gpu {
 
 namespace {

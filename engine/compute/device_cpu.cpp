@@ -33,7 +33,7 @@ const char* isaName(Isa isa) {
 namespace {
 
 Isa machineIsa() {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__MINGW32__)  // for which the others are not compiled: fluid/CMakeLists.txt
     __builtin_cpu_init();
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2")) return Isa::generic;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&

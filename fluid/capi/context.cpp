@@ -154,7 +154,7 @@ void rivulet_context_destroy(rivulet_context* context) {
     bool gone = false;
     silently([&] {
         Status can = ready(*context, Needs::drawing);
-        if (context->children > 0) can = badInput(fmt::format("destroy its {} worlds and skins first", context->children));
+        if (context->children > 0) can = badInput(fmt::format("destroy its {} worlds and skins first", context->children.load()));
         if (!can) return context->log.error(fmt::format("a context was not destroyed: {}", can.error().message));
         const CallScope scope(*context, Needs::drawing);
         context->water.reset();

@@ -49,12 +49,12 @@ bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 // A window that shows water at rest marches it once.
-const RaymarchPicture& march(std::shared_ptr<MarchedReference>& last, MarchedReference now, const std::function<bool(double)>& progress) {
+const RaymarchPicture* march(std::shared_ptr<MarchedReference>& last, MarchedReference now, const std::function<bool(double)>& progress) {
     const bool same = last && sameBytes(last->particles, now.particles) && sameBytes(last->until, now.until) &&
                       last->view.view == now.view.view && last->view.projection == now.view.projection &&
                       last->view.width == now.view.width && last->view.height == now.view.height && last->box.min == now.box.min &&
                       last->box.max == now.box.max && last->spacing == now.spacing && last->holds == now.holds;
-    if (same) return last->picture;
+    if (same) return &last->picture;
     const Result<IsoSurface> surface = IsoSurface::create(bodyAtWalls(now.particles, now.spacing, now.box, now.holds), now.spacing);
     ASSERT(surface, "a FluidView has a spacing of more than 0");
     bool whole = true;
@@ -66,7 +66,7 @@ const RaymarchPicture& march(std::shared_ptr<MarchedReference>& last, MarchedRef
     now.picture = raymarch(*surface, now.view, {.box = now.box, .until = now.until, .progress = report});
     last = std::make_shared<MarchedReference>(std::move(now));
     if (!whole) last->particles.clear();  // marched anew the next time
-    return last->picture;
+    return &last->picture;
 }
 
 }  // namespace
@@ -90,17 +90,17 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
                    std::vector<vec4> particles(d.fluid.count);
                    glGetNamedBufferSubData(c.buffer(d.position), 0, static_cast<GLsizeiptr>(particles.size() * sizeof(vec4)),
                                            particles.data());
-                   const RaymarchPicture& picture = march(programs.marched,
-                                                          {.particles = std::move(particles),
-                                                           .until = sceneDepths(c.texture(d.depth), d.view),
-                                                           .view = d.view,
-                                                           .box = d.fluid.bounds,
-                                                           .spacing = d.fluid.spacing,
-                                                           .holds = holdsTogether(d.fluid.viscosity, d.fluid.spacing),
-                                                           .picture = {}},
-                                                          d.progress);
-                   upload(c.texture(water.depth), picture.depth);
-                   upload(c.texture(water.normals), picture.water);
+                   const RaymarchPicture* const picture = march(programs.marched,
+                                                                {.particles = std::move(particles),
+                                                                 .until = sceneDepths(c.texture(d.depth), d.view),
+                                                                 .view = d.view,
+                                                                 .box = d.fluid.bounds,
+                                                                 .spacing = d.fluid.spacing,
+                                                                 .holds = holdsTogether(d.fluid.viscosity, d.fluid.spacing),
+                                                                 .picture = {}},
+                                                                d.progress);
+                   upload(c.texture(water.depth), picture->depth);
+                   upload(c.texture(water.normals), picture->water);
                });
     const FluidLayers layers = addShade(graph, programs, d, water);
     if (d.look.view == WaterView::water) addSpray(graph, programs, d, layers);

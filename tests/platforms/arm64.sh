@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# arm64: the library and rivulet.h, cross-built in a chroot of Debian 13; then a host in C steps water on the cpu under qemu-user.
+#   bash tests/platforms/arm64.sh
+set -u
+. "$(dirname "${BASH_SOURCE[0]}")/chroot.sh"
+system_of trixie arm64
+packages cmake ninja-build ccache pkg-config python3-glad g++-aarch64-linux-gnu qemu-user libglm-dev libeigen3-dev libstb-dev \
+    {libtbb,libfmt,libzstd,libxxhash,libjsoncpp,ocl-icd-opencl}-dev:arm64
+cat >"$system/arm64.cmake" <<'END'
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+END
+inside bash -c 'export PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig && cmake -S /src -B /build-arm64 -G Ninja \
+        -DCMAKE_TOOLCHAIN_FILE=/arm64.cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/arm64 -DRIVULET_PROGRAM=OFF -DRIVULET_TESTS=OFF &&
+    cmake --build /build-arm64 && cmake --install /build-arm64' || fail "the build for arm64 failed."
+inside bash -c 'cd /tmp && aarch64-linux-gnu-gcc -std=c11 -O1 -Wall -Wextra -I/arm64/include /src/tests/platforms/fall.c -L/arm64/lib -lrivulet -lm \
+        -Wl,-rpath,/arm64/lib -o fall.arm64 && qemu-aarch64 -L / ./fall.arm64' || fail "the host failed."

@@ -33,7 +33,7 @@ void syncFolderOf(const std::string& path);  // some file systems cannot: the fi
 Descriptor duplicateOf(int descriptor);      // not valid: errno says why
 // Writes at the file's place; the number of bytes, -1: errno says why.
 std::ptrdiff_t writeSome(const Descriptor& file, const void* from, size_t bytes);
-// Reads at a place without moving the file's own; the number of bytes, 0 at the end, -1: errno says why.
+// Reads at a place; where the file itself stands is then undefined. Returns the number of bytes, 0 at the end, -1: errno says why.
 std::ptrdiff_t readAt(const Descriptor& file, void* to, size_t bytes, uint64_t at);
 
 using ProcessId = int;

@@ -114,6 +114,8 @@ JobsScope::JobsScope(const Jobs& jobs) : before_(std::exchange(current, jobs)) {
 
 JobsScope::~JobsScope() { current = before_; }
 
+void JobsScope::end() { current = {}; }
+
 Jobs aloneUntil(const std::atomic<bool>* stop) {
     Jobs jobs;
     jobs.run = [](void*, void (*function)(void*, size_t), void* argument, size_t count) {

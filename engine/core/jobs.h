@@ -39,6 +39,8 @@ class JobsScope {
     JobsScope(const JobsScope&) = delete;
     JobsScope& operator=(const JobsScope&) = delete;
 
+    static void end();  // of all scopes of this thread that were left by longjmp
+
   private:
     Jobs before_;
 };

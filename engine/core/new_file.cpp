@@ -64,6 +64,7 @@ struct NewFile::Impl {
 
     ~Impl() {
         if (temporary.empty()) return;
+        (void)file.close();  // Windows removes no open file
         removeFile(temporary.c_str());
         forget();
     }

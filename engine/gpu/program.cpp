@@ -209,7 +209,10 @@ void Program::use() const { glUseProgram(name()); }
 std::optional<int> Program::changed(std::string_view uniform, std::span<const std::byte> value) {
     Uniform& known = find(uniform);
     if (known.location < 0) return std::nullopt;
-    if (value.size() > known.value.size()) return known.location;
+    if (value.size() > known.value.size()) {
+        known.bytes = 0;
+        return known.location;
+    }
     if (known.bytes == value.size() && std::equal(value.begin(), value.end(), known.value.begin())) return std::nullopt;
     known.bytes = value.size();
     std::copy(value.begin(), value.end(), known.value.begin());

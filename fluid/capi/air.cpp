@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,21 +21,44 @@ namespace {
 
 constexpr double kPicolitre = 1.0e-15;  // m^3
 
-// Error (badInput): a skin is NULL, twice there, of another context, or not where it was in the last call.
-Status follow(rivulet_world& world, std::span<rivulet_skin* const> skins) {
+// Error (badInput): a skin is NULL, twice there or of another context.
+Status checkSkins(const rivulet_world& world, std::span<rivulet_skin* const> skins) {
     for (size_t k = 0; k < skins.size(); ++k) {
         if (skins[k] == nullptr) return badInput(fmt::format("skins[{}] is NULL", k));
         if (skins[k]->context != world.context) return badInput(fmt::format("skins[{}] is of another context than the world", k));
-        if (std::find(skins.begin(), skins.begin() + static_cast<std::ptrdiff_t>(k), skins[k]) !=
-            skins.begin() + static_cast<std::ptrdiff_t>(k))
-            return badInput(fmt::format("skins[{}] is there twice", k));
+        const auto here = skins.begin() + static_cast<std::ptrdiff_t>(k);
+        if (std::find(skins.begin(), here, skins[k]) != here) return badInput(fmt::format("skins[{}] is there twice", k));
     }
-    // Drops in the air know their skin by its place.
-    if (skins.size() < world.skins.size() || !std::equal(world.skins.begin(), world.skins.end(), skins.begin()))
-        return badInput("skins are not those of the last call: give the same ones in the same order, and others after them");
-    world.skins.assign(skins.begin(), skins.end());
-    for (rivulet_skin* skin : skins) skin->maps->leaveOutHanging(true);
     return ok();
+}
+
+// Drops in the air know their skin by its place in the list: they follow it to its new place, and are lost with a skin that is gone.
+void follow(rivulet_world& world, std::span<rivulet_skin* const> skins) {
+    std::vector<uint64_t> serials;
+    serials.reserve(skins.size());
+    for (const rivulet_skin* skin : skins) serials.push_back(skin->serial);
+    if (serials == world.skins) return;
+    std::vector<std::optional<uint32_t>> places;
+    places.reserve(world.skins.size());
+    for (const uint64_t serial : world.skins) {
+        const auto at = std::find(serials.begin(), serials.end(), serial);
+        places.push_back(at == serials.end() ? std::nullopt : std::optional(static_cast<uint32_t>(at - serials.begin())));
+    }
+    world.air.renumber(places);
+    world.skins = std::move(serials);
+}
+
+// What all of them use.
+Needs needsOfAll(const rivulet_skin_inputs* inputs, size_t count) {
+    const auto* at = reinterpret_cast<const std::byte*>(inputs);
+    for (size_t k = 0; inputs != nullptr && k < count; ++k) {
+        const auto* one = reinterpret_cast<const rivulet_skin_inputs*>(at);
+        if (needsOf(one) == Needs::drawing) return Needs::drawing;
+        const Result<size_t> size = sizeOf(one, "rivulet_skin_inputs", "inputs");
+        if (!size) break;  // reported by readInputs
+        at += *size;
+    }
+    return Needs::device;
 }
 
 Result<std::vector<rivulet_skin_inputs>> readInputs(const rivulet_skin_inputs* inputs, size_t count) {
@@ -52,7 +78,7 @@ Result<std::vector<rivulet_skin_inputs>> readInputs(const rivulet_skin_inputs* i
 
 rivulet_status rivulet_world_step_skins(rivulet_world* world, rivulet_skin* const* skins, const rivulet_skin_inputs* inputs, size_t count,
                                         double seconds, rivulet_air* air, rivulet_error* why) {
-    return with(world, why, Needs::drawing, [&]() -> Status {
+    return with(world, why, needsOfAll(inputs, count), [&]() -> Status {
         if (count == 0 || skins == nullptr) return badInput("skins is NULL or count is 0: give at least one skin");
         rivulet_air around{};
         if (air != nullptr) {
@@ -61,7 +87,7 @@ rivulet_status rivulet_world_step_skins(rivulet_world* world, rivulet_skin* cons
             around = *given;
         }
         const std::span<rivulet_skin* const> all(skins, count);
-        if (Status same = follow(*world, all); !same) return same;
+        if (Status sound = checkSkins(*world, all); !sound) return sound;
         const Result<std::vector<rivulet_skin_inputs>> in = readInputs(inputs, count);
         if (!in) return in.error();
         for (size_t k = 0; k < count; ++k)
@@ -70,9 +96,11 @@ rivulet_status rivulet_world_step_skins(rivulet_world* world, rivulet_skin* cons
         if (!isWithin(gravity, kMostGravity) || !isWithin(vec3(around.floor), kMostDistance))
             return badInput(fmt::format("air.gravity or air.floor is not finite, or beyond {} m/s^2 or {} m", kMostGravity, kMostDistance));
         if (seconds > 0) {
+            follow(*world, all);
             std::vector<PlacedFlow*> placed;
             std::vector<vec3> winds;
             for (size_t k = 0; k < count; ++k) {
+                all[k]->maps->leaveOutHanging(true);
                 placeSkin(*all[k], (*in)[k], world->airTime, seconds);
                 all[k]->placed->moveTo(world->airTime);
                 placed.push_back(&*all[k]->placed);

@@ -45,6 +45,7 @@ inline Status ready(rivulet_context& context, Needs needs) {
         if (context.hostGl) context.drawing = false;
         context.hostGl.reset();  // restores the host's state
         gpu::LostContext::here() = false;
+        JobsScope::end();
         context.callback = {};
         context.busy = false;
     }
@@ -151,6 +152,14 @@ rivulet_status with(Handle* handle, rivulet_error* why, Needs needs, const Work&
     return status;
 }
 
+// Before a handle is deleted: a world's recording gets its end.
+inline void end(rivulet_world* world) {
+    if (!world->recording || world->recording->frames() == 0) return;
+    if (const Status closed = world->recording->close(); !closed) world->context->log.error(closed.error().message);
+}
+inline void end(rivulet_skin*) {}
+inline void end(rivulet_snapshot*) {}
+
 // If it cannot be destroyed now, this is logged.
 template <class Handle>
 void destroy(Handle* handle) {
@@ -160,6 +169,7 @@ void destroy(Handle* handle) {
         if (Status can = ready(context, Needs::drawing); can) {
             const CallScope scope(context, Needs::drawing);
             --context.children;
+            end(handle);
             delete handle;
         } else {
             context.log.error(fmt::format("a {} was not destroyed: {}", kindOf(handle), can.error().message));

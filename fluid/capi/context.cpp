@@ -168,7 +168,8 @@ void rivulet_context_destroy(rivulet_context* context) {
 rivulet_status rivulet_context_lost(rivulet_context* context, rivulet_error* why) {
     return guarded(why, [&]() -> Status {
         if (context == nullptr) return badInput("context is NULL");
-        if (context->busy || context->callback.frame != nullptr) return badInput("the context is in use: report its loss after the call");
+        if ((context->busy || context->callback.frame != nullptr) && !context->callback.left())
+            return badInput("the context is in use: report its loss after the call");
         context->lost = true;
         context->current = nullptr;
         return ok();
@@ -183,6 +184,7 @@ rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time
         if (context == nullptr) return badInput("context is NULL");
         if (count == nullptr || (times == nullptr && capacity > 0)) return badInput("count or times is NULL");
         if (Status can = ready(*context, Needs::device); !can) return can;
+        if (Status there = stillThere(*context, Needs::device); !there) return there;
         const CallScope scope(*context, Needs::device);
         collectTimes(*context);
         std::vector<PassTime> all;

@@ -37,14 +37,15 @@ struct rivulet_context {
     double deviceMs = 0;                              // of the simulation, since the start
     size_t memoryLimit = 0;                           // as rivulet_context_options
     std::atomic<int> children = 0;                    // worlds, skins and snapshots
-    void* current = nullptr;                          // the OpenGL context that it was created in; null: none, or not known
-    bool lost = false;                                // the OpenGL context has ended: rivulet_context_lost
-    bool busy = false;                                // a call is running, of all but those that draw a snapshot
-    std::atomic<bool> drawing = false;                // a call that uses OpenGL is running
-    rivulet::capi::Callback callback;                 // of that call
-    std::optional<rivulet::gpu::HostState> hostGl;    // of that call, if it uses OpenGL
-    bool plainState = false;                          // as rivulet_context_options::plain_state
-    std::atomic<bool> stop = false;                   // of the device
+    uint64_t skinsMade = 0;
+    void* current = nullptr;                        // the OpenGL context that it was created in; null: none, or not known
+    bool lost = false;                              // the OpenGL context has ended: rivulet_context_lost
+    bool busy = false;                              // a call is running, of all but those that draw a snapshot
+    std::atomic<bool> drawing = false;              // a call that uses OpenGL is running
+    rivulet::capi::Callback callback;               // of that call
+    std::optional<rivulet::gpu::HostState> hostGl;  // of that call, if it uses OpenGL
+    bool plainState = false;                        // as rivulet_context_options::plain_state
+    std::atomic<bool> stop = false;                 // of the device
 };
 
 namespace rivulet::capi {
@@ -83,7 +84,7 @@ struct rivulet_world {
     double deviceMs = 0;  // the context's, when this was last stepped
     // Of rivulet_world_step_skins: the drops in the air, the skins they fall from, s since the first such step.
     rivulet::AirDrops air;
-    std::vector<const rivulet_skin*> skins;                 // compared only: a host may have destroyed one
+    std::vector<uint64_t> skins;                            // their serials, in the order of the last such step
     std::vector<rivulet::vec4> fallingDrops, hangingDrops;  // as FluidView::drops and pendants
     double airTime = 0;
     bool exchanges = false;  // its water takes drops in
@@ -120,5 +121,6 @@ struct rivulet_skin {
         rivulet::dmat4 at(double time) const;
     } motion;
     uint64_t steps = 0;
+    uint64_t serial = 0;  // unlike that of all other skins of the context
     std::optional<rivulet::PlacedFlow> placed;
 };

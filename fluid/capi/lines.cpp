@@ -103,9 +103,9 @@ rivulet_status rivulet_world_lines(const rivulet_world* world,
             lines->box(glm::clamp(fluid.probes[k].min, fluid.box.min, fluid.box.max),
                        glm::clamp(fluid.probes[k].max, fluid.box.min, fluid.box.max));
         }
-        for (size_t k = 0; k < of.poses().size(); ++k) {
+        for (const auto& [k, pose] : world->walls.placesOfMoving(of)) {
             lines->begin(RIVULET_PART_WALL, k);
-            lines->axes(of.poses()[k], 4 * fluid.spacing);
+            lines->axes(pose, 4 * fluid.spacing);
         }
         for (size_t k = 0; k < of.bodies().size(); ++k) {
             lines->begin(RIVULET_PART_BODY, k);

@@ -23,11 +23,11 @@
  * current. Contexts are independent: different threads may use different ones at the same time. Snapshots can be drawn while another thread
  * steps their world: see rivulet_snapshot.h.
  *
- * Callbacks (log, bodies, jobs, memory) run on the calling thread, before the call returns; log is called at the end of the call. A
- * callback that calls back into the same context gets RIVULET_BAD_INPUT. A C++ callback may throw: the call then goes on and returns
- * RIVULET_FAILED, with the exception's text; what log throws is dropped. A callback may be left by longjmp on the same thread: the next
+ * Callbacks run on the calling thread, before the call returns; log, and those of rivulet_query.h, at the end of the call. A callback that
+ * calls back into the same context gets RIVULET_BAD_INPUT. The functions of bodies may throw in C++: the call then goes on and returns
+ * RIVULET_FAILED, with the exception's text; what others throw is dropped. A callback may be left by longjmp on the same thread: the next
  * call ends the unfinished one, and a world that was being stepped, reset or created is incomplete (see rivulet_world_step); a little
- * memory is lost.
+ * memory is lost. The functions of rivulet_jobs and rivulet_memory may do neither.
  *
  * Bounds: what is not finite or absurd is RIVULET_BAD_INPUT. Values of a scene have the ranges of docs/parameters.md, and blocks, emitters,
  * bodies and particles lie in the box. Lengths and positions are at most 1e6 m, speeds of walls, bodies and particles at most 1e6 m/s,
@@ -36,8 +36,8 @@
  * OpenGL: functions that need it are all with backend gl, else those that create, destroy and draw. They return RIVULET_BAD_INPUT if the
  * OpenGL context of their rivulet_context is not current. They restore all OpenGL state, with two exceptions: pending errors of glGetError
  * may be cleared, and an object that was deleted while bound is unbound. Transform feedback, counting queries and conditional rendering
- * must not be active. Only rivulet_world_draw draws. Destroy worlds, skins and contexts before the OpenGL context: if it is not current,
- * destruction is refused and logged. If it has ended, call rivulet_context_lost first.
+ * must not be active. Only rivulet_world_draw and rivulet_snapshot_draw draw. Destroy worlds, skins and contexts before the OpenGL context:
+ * if it is not current, destruction is refused and logged. If it has ended, call rivulet_context_lost first.
  */
 #ifndef RIVULET_H
 #define RIVULET_H

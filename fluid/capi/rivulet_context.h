@@ -89,9 +89,10 @@ typedef struct rivulet_context_options {
     int32_t threads;                     /* that a loop runs on at most; 0: all cores, or all workers of jobs */
     const rivulet_jobs* jobs;            /* NULL: the library's own threads */
     const rivulet_memory* memory;        /* NULL: malloc */
-    /* 0: every call restores the host's OpenGL state. 1: no call asks for it, which saves about 130 calls of OpenGL; for a host that sets
-       the state it needs. Afterwards state is as in a new context, and nothing is bound to framebuffers, to texture units 0 to 11, 16 and
-       24 to 30, to uniform buffers 0 to 3 and to storage buffers 0 to 8; viewport 0 and its scissor box have any value. */
+    /* 0: every call restores the host's OpenGL state. 1: no call asks for it, but for the depth convention, which saves about 130 calls of
+       OpenGL; for a host that sets the state it needs. Afterwards state is as in a new context, but that of draw buffers from the third on,
+       which stays; nothing is bound to framebuffers, to texture units 0 to 11, 16 and 24 to 30, to uniform buffers 0 to 3 and to storage
+       buffers 0 to 8; viewport 0 and its scissor box have any value. */
     uint32_t plain_state;
 } rivulet_context_options;
 
@@ -101,7 +102,8 @@ RIVULET_API void rivulet_context_destroy(rivulet_context* context);
 /* The OpenGL context that this was created in is gone or lost: destroyed by the host, reset by its driver (glGetGraphicsResetStatus). From
    now on no function of OpenGL is called for this context; it, its worlds and its skins can be destroyed on any thread, which frees their
    host memory. OpenGL objects of theirs end with the OpenGL context; they stay only where another context shares them. Worlds of backend
-   cpu, and of cl without memory shared with OpenGL, can still be stepped, queried and saved; all else returns RIVULET_FAILED. */
+   cpu, and of cl without memory shared with OpenGL, can still be created, stepped, queried and saved; what needs OpenGL returns
+   RIVULET_FAILED. */
 RIVULET_API rivulet_status rivulet_context_lost(rivulet_context* context, rivulet_error* why);
 /* The device that simulates, "cpu: AMD EPYC, 2 threads"; valid as long as the context. */
 RIVULET_API const char* rivulet_context_device(const rivulet_context* context);

@@ -58,8 +58,9 @@ RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivul
    lands on a skin that it meets, goes into the world's water or is lost below `floor`; particles of the world that come down on a skin
    become drops. After the world's step of the same `seconds`. Water is exchanged if rivulet_world_options.skins_bring is above 0; this
    waits for a GPU. rivulet_world_draw draws the drops in the air and those that hang from the skins, which the skins' maps then leave out.
-   `skins`: of the world's context; the same ones in the same order in each call, others after them. `inputs`: one each, every one of its
-   own size; NULL: none. A world's reset or restore leaves skins and drops in the air as they are. */
+   `skins`: of the world's context, others than in the last call if need be: drops in the air of a skin that is not among them are lost.
+   `inputs`: an array with one entry for each skin; NULL: defaults. A world's reset or restore leaves skins and drops in the air as they
+   are. RIVULET_FAILED: some skins and drops have been stepped, others not; all are valid unless a stop has interrupted the step. */
 typedef struct rivulet_air {
     size_t size;
     const float* gravity;          /* m/s^2; NULL: fluid.gravity. That of `inputs` is not used */

@@ -17,8 +17,8 @@ extern "C" {
  * While one thread is in rivulet_snapshot_draw or rivulet_snapshot_buffers, one other thread may be in a function of the same context that
  * needs no OpenGL: step, reset, set, stats, particles, bodies, save, restore, snapshot, and those of rivulet_query.h, of a world. All other
  * functions of the context, creation and destruction among them, run alone. A snapshot is used by one call at a time: it is filled or
- * drawn. Calls that break these rules return RIVULET_BAD_INPUT where that is noticed. Of what drawing a snapshot has to say, the log is
- * called at the end of the next other call of the context.
+ * drawn. Calls that break these rules return RIVULET_BAD_INPUT where that is noticed. Messages from
+ * drawing a snapshot reach the log at the end of the next other call of the context.
  *
  * With backend gl all functions need the OpenGL context of the rivulet_context, which is current on one thread: a step on another thread is
  * refused. There the GPU works while the host's thread goes on; a snapshot is a copy on the GPU, which outlasts the steps after it. To step
@@ -35,8 +35,8 @@ RIVULET_API rivulet_status rivulet_world_snapshot(rivulet_world* world, rivulet_
    ends the recording; so does the world's destruction. Until then an older file of the name stays as it is. RIVULET_FAILED, also of a step:
    the file cannot be written; the recording has then ended. Wetness and drops of skins are not recorded. */
 RIVULET_API rivulet_status rivulet_world_record(rivulet_world* world, const char* path, rivulet_error* why);
-/* Puts frame `frame` (from 0) of a recorded file into the snapshot, with the look and liquid of `world`, which is not changed. Every host
-   can show it again at any speed and from any frame. The file stays open until another is given or the snapshot is destroyed.
+/* Puts frame `frame` (from 0) of a recorded file into the snapshot, with the look and liquid of `world`, which is not changed. Frames can
+   be read in any order. The file stays open until another is given or the snapshot is destroyed.
    RIVULET_BAD_INPUT: it is no recording, is damaged or has no such frame. */
 typedef struct rivulet_recorded {
     size_t size;
@@ -46,7 +46,8 @@ typedef struct rivulet_recorded {
 RIVULET_API rivulet_status rivulet_snapshot_replay(rivulet_snapshot* snapshot, const rivulet_world* world, const char* path, size_t frame,
                                                    rivulet_recorded* recorded, rivulet_error* why);
 /* As rivulet_world_draw and rivulet_world_buffers, of the world as it was. RIVULET_BAD_INPUT: the snapshot is empty. The buffers are valid
-   until the snapshot is filled, drawn or destroyed; in place of rivulet_world_wet_solid after a step, call it before the next one. */
+   until the snapshot is filled, drawn or destroyed. Call rivulet_world_wet_solid when you take the snapshot: after the next step it
+   describes the new state. Drops of rivulet_world_step_skins are not part of a snapshot. */
 RIVULET_API rivulet_status rivulet_snapshot_draw(rivulet_snapshot* snapshot, const rivulet_view* view, const rivulet_target* target,
                                                  rivulet_error* why);
 RIVULET_API rivulet_status rivulet_snapshot_buffers(rivulet_snapshot* snapshot, rivulet_buffers* buffers, rivulet_error* why);

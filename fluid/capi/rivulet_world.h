@@ -135,7 +135,8 @@ RIVULET_API rivulet_status rivulet_world_remove_wall(rivulet_world* world, uint3
 /* `state`: a rivulet_wall_state. RIVULET_FAILED: its bake failed, and why; it never acts. RIVULET_BAD_INPUT: there is no such wall. */
 RIVULET_API rivulet_status rivulet_world_wall(const rivulet_world* world, uint32_t id, int32_t* state, rivulet_error* why);
 /* Sets all emitters and sinks: {"emitters": [...], "sinks": [...]}, as in the world's json; a list that is absent is empty. With another
-   number of either than before, all emitters begin anew. Emitters spawn into free memory: fluid.maxParticles reserves it. */
+   number of either than before, all emitters begin anew. Emitters spawn into free memory: fluid.maxParticles reserves it.
+   RIVULET_BAD_INPUT: another number in a world with skins_bring above 0, or with fluid.grid linked_list. */
 RIVULET_API rivulet_status rivulet_world_set_sources(rivulet_world* world, const char* json, rivulet_error* why);
 /* On a GPU the values are two or three frames old. */
 RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why);

@@ -51,7 +51,7 @@ Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivul
     Result<FlowMaps> maps = FlowMaps::create(*s.flow, uvs, size);
     if (!maps) return maps.error();
     s.maps.emplace(std::move(*maps));
-    if (!context.gl.present()) return ok();
+    if (!context.gl.present() || context.lost) return ok();
     Result<FlowLayer> layer = FlowLayer::create(size);
     if (!layer) return layer.error();
     s.layer.emplace(std::move(*layer));
@@ -176,6 +176,7 @@ rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_
         const CallScope scope(*context, Needs::drawing);
         auto made = std::make_unique<rivulet_skin>();
         if (Status done = createSkin(*context, *o, *made); !done) return done;
+        made->serial = ++context->skinsMade;
         ++context->children;
         *skin = made.release();
         return ok();

@@ -1,6 +1,7 @@
 // rivulet.h: snapshots and recordings.
 #include <fmt/format.h>
 
+#include <thread>
 #include <utility>
 
 #include "fluid/capi/call.h"
@@ -37,10 +38,13 @@ rivulet_status whileStepping(rivulet_snapshot* snapshot, rivulet_error* why, con
         rivulet_context& context = *snapshot->context;
         if (!context.water) return badInput("the context has no OpenGL: set rivulet_context_options.find");
         if (context.lost) return lostContext();
+        if (context.callback.frame != nullptr && context.callback.thread == std::this_thread::get_id() && !context.callback.left())
+            return badInput("the context is in use: callbacks must not call back into it");
         if (context.current != nullptr && gpu::currentContext().context != context.current) return notCurrent();
         const Claim mine(snapshot->used), alone(context.drawing);
         if (!mine.mine()) return inUse();
         if (!alone.mine()) return badInput("the context is in use: another call draws or uses OpenGL");
+        const JobsScope jobs(context.jobs);
         return work();
     });
 }

@@ -62,6 +62,11 @@ Result<Walls::Wall> Walls::read(const rivulet_mesh& wall, const std::string& nam
         if (!pose) return pose.error();
         made.start = made.now = *pose;
     }
+    if (!std::isfinite(wall.friction) || !std::isfinite(wall.restitution) || wall.restitution > 1)
+        return badInput(
+            fmt::format("{}: friction is {} and restitution {}; give a friction of 0 or more and a restitution of 0 to 1, or "
+                        "negative numbers for those of fluid.collision",
+                        name, wall.friction, wall.restitution));
     const std::optional<uint8_t> surface = surfaceFor({wall.friction, wall.restitution}, ownSurface);
     if (!surface)
         return badInput(
@@ -218,13 +223,21 @@ Status Walls::remove(FluidWorld& world, uint32_t id) {
         if (!set) all_.insert(place, std::move(gone));
         return set;
     }
-    at->leaves = true;
     int finest = 0;
-    std::vector<BakedMesh> rest = standing(finest);
-    standingBake_.reset();
-    if (!rest.empty()) {
-        const VoxelFieldOptions options = optionsFor(rest, finest);
-        standingBake_ = std::make_unique<FieldBake>(std::move(rest), options, jobs_);
+    at->leaves = true;
+    std::unique_ptr<FieldBake> bake;
+    try {
+        std::vector<BakedMesh> rest = standing(finest);
+        if (!rest.empty()) {
+            const VoxelFieldOptions options = optionsFor(rest, finest);
+            bake = std::make_unique<FieldBake>(std::move(rest), options, jobs_);
+        }
+    } catch (...) {
+        at->leaves = false;
+        throw;
+    }
+    if (bake != nullptr) {
+        standingBake_ = std::move(bake);
         return ok();
     }
     std::unique_ptr<VoxelField> before = std::move(standing_);
@@ -233,6 +246,7 @@ Status Walls::remove(FluidWorld& world, uint32_t id) {
         at->leaves = false;
         return set;
     }
+    standingBake_.reset();
     std::erase_if(all_, [](const Wall& w) { return w.leaves; });
     return ok();
 }
@@ -315,6 +329,19 @@ Walls::Targets Walls::targets() const {
         if (w.deforming) targets.shapes.push_back(w.shape);
     }
     return targets;
+}
+
+std::vector<std::pair<size_t, Pose>> Walls::placesOfMoving(const FluidWorld& world) const {
+    std::vector<std::pair<size_t, Pose>> places;
+    size_t rigid = 0, moving = 0;
+    for (const Wall& w : all_) {
+        if (w.acts() && std::find(acting_.begin(), acting_.end(), w.id) != acting_.end()) {
+            const Pose& pose = world.poses()[rigid++];
+            if (w.moves) places.emplace_back(moving, pose);
+        }
+        moving += w.moves ? 1 : 0;
+    }
+    return places;
 }
 
 size_t Walls::deforming() const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/jobs.h"
@@ -43,6 +44,8 @@ class Walls {
         std::vector<Pose> poses, moving;
         std::vector<std::vector<vec3>> shapes;  // m, of solids().deforming
     };
+    // Of those that move and act: which of all that move, and where it is.
+    std::vector<std::pair<size_t, Pose>> placesOfMoving(const FluidWorld& world) const;
     size_t deforming() const;  // that deform
     // Of one of these: m, 3 floats for each of its vertices.
     void deform(size_t which, const float* positions);

@@ -217,12 +217,7 @@ rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_worl
     return status;
 }
 
-void rivulet_world_destroy(rivulet_world* world) {
-    rivulet_error why;
-    if (world != nullptr && world->recording && rivulet_world_record(world, nullptr, &why) != RIVULET_OK)
-        silently([&] { world->context->log.error(why.message); });
-    destroy(world);
-}
+void rivulet_world_destroy(rivulet_world* world) { destroy(world); }
 
 rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
@@ -244,7 +239,8 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
             if (!pose) return pose.error();
             poses.push_back(*pose);
         }
-        for (const std::string& wrong : world->walls.arrive(*world->world)) world->context->log.error(wrong);
+        if (world->world->lastStep())  // walls of an incomplete world do not change
+            for (const std::string& wrong : world->walls.arrive(*world->world)) world->context->log.error(wrong);
         const Walls::Targets before = world->walls.targets();
         if (in.poses != nullptr) world->walls.move(poses);
         for (size_t k = 0; in.shapes != nullptr && k < deforming; ++k)

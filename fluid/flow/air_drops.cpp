@@ -191,6 +191,15 @@ Status AirDrops::step(const Inputs& inputs, double seconds) {
     return ok();
 }
 
+void AirDrops::renumber(std::span<const std::optional<uint32_t>> places) {
+    std::erase_if(drops_, [&](AirDrop& d) {
+        const std::optional<uint32_t> place = d.skin < places.size() ? places[d.skin] : std::nullopt;
+        if (!place) drained_ += d.picolitres;
+        d.skin = place.value_or(0);
+        return !place;
+    });
+}
+
 std::vector<vec4> AirDrops::drawn() const {
     std::vector<vec4> all;
     for (const AirDrop& d : drops_) {

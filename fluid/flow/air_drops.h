@@ -2,6 +2,7 @@
 // it; a particle of the world that comes down on a skin becomes drops. One mass: it is counted in picolitres.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,8 @@ class AirDrops {
     // it asks of the world's water and of the skins it reads back: on a GPU this waits. Error (failed): out of memory.
     Status step(const Inputs& inputs, double seconds);
     void add(const AirDrop& drop) { drops_.push_back(drop); }
+    // From now on the skin that was number k in Inputs::skins is number places[k]. Nothing: it is gone; drops of it are lost, as drained.
+    void renumber(std::span<const std::optional<uint32_t>> places);
 
     const std::vector<AirDrop>& drops() const { return drops_; }
     std::vector<vec4> drawn() const;  // the balls, as FluidView::drops

@@ -1,10 +1,13 @@
 #include "fluid/voxel/field_bake.h"
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
+
+#include "engine/core/exception_error.h"
 
 namespace rivulet {
 
@@ -36,6 +39,8 @@ struct FieldBake::State {
             made = failed("the bake was cancelled");
         } catch (const std::bad_alloc&) {
             made = noMemory("there is not enough memory to bake a mesh; lower its resolution");
+        } catch (...) {
+            made = errorOf(std::current_exception());
         }
         const std::scoped_lock lock(mutex);
         result = std::move(made);

@@ -19,8 +19,8 @@ system_of() {
     fi
     mkdir -p "$system/src"
     mountpoint -q "$system/proc" || mount -t proc proc "$system/proc"
-    mountpoint -q "$system/dev" || mount --rbind /dev "$system/dev"
-    mountpoint -q "$system/src" || mount --bind "$root" "$system/src"
+    mountpoint -q "$system/dev" || { mount --rbind /dev "$system/dev" && mount --make-rslave "$system/dev"; }
+    mountpoint -q "$system/src" || { mount --bind "$root" "$system/src" && mount -o remount,bind,ro "$system/src"; }
     trap unmount EXIT
     cp /etc/resolv.conf "$system/etc/resolv.conf"
     inside apt-get -q update >"$systems/$1.log" 2>&1 || fail "apt-get update failed in $system; its log is $systems/$1.log."

@@ -101,6 +101,12 @@ bool SolidPasses::insideAdded(const vec3& p, float spacing) const {
     return staticAdded_ && static_.field != nullptr && (!static_.maySpawn(p, spacing, 0) || inWall(static_.field->surface, p));
 }
 
+bool SolidPasses::anyAdded() const {
+    const auto added = [](const Moving& m) { return m.added; };
+    return !planeSolids_.empty() || std::ranges::any_of(rigid_, added) || std::ranges::any_of(deforming_, added) ||
+           (staticAdded_ && static_.field != nullptr);
+}
+
 bool SolidPasses::hasSurfaces(std::span<const Surface> surfaces) const {
     return std::ranges::equal(
         surfaces, surfaces_, [](const Surface& a, const Surface& b) { return a.friction == b.friction && a.restitution == b.restitution; });

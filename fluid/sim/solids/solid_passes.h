@@ -37,6 +37,7 @@ class SolidPasses {
     bool maySpawn(const vec3& p, float spacing, float near = 1) const;
     // True if `p` is inside a mesh that the last replace() added, or behind a plane.
     bool insideAdded(const vec3& p, float spacing) const;
+    bool anyAdded() const;  // false: insideAdded() is false everywhere
     bool any() const { return planeCount() > 0 || static_.field != nullptr || !rigid_.empty() || !deforming_.empty(); }
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
     const Buffer& planes() const { return planes_; }  // in the layout of integrate.kernel

@@ -33,27 +33,34 @@ Status FluidWorld::setWalls(const Solids& solids, std::span<const Pose> poses, b
     w.posesBefore.clear();
     if (w.sleep) w.sleep->disturbAll(w.clock.time);
     if (!w.params.probes.empty())
-        if (Status done = w.prepareProbes(w.params); !done) w.report(done.error().message);
-    return removeInside && w.solids.any() ? w.removeInside() : ok();
+        if (Status done = w.prepareProbes(w.params); !done) {
+            w.probes.reset();  // it reads walls that are gone
+            w.report(done.error().message);
+        }
+    // The walls have changed: what follows may fail, and is then no error of this call.
+    if (removeInside && w.solids.any())
+        if (Status removed = w.removeInside(); !removed) w.log.warning(removed.error().message);
+    return ok();
 }
 
 Status FluidWorld::Impl::removeInside() {
-    Result<std::vector<vec4>> read = std::vector<vec4>();
+    if (!solids.anyAdded()) return ok();
+    std::vector<uint32_t> inside;
+    std::vector<NamedBuffer> remembered;
     try {
-        read = device->readAll<vec4>(particles.positionNext, particles.count);
+        const std::vector<vec4> read = device->readAll<vec4>(particles.positionNext, particles.count);
+        const std::vector<uint32_t> id = device->readAll<uint32_t>(particles.id, particles.count);
+        for (uint32_t k = 0; k < particles.count; ++k)
+            if (const vec4& p = read[k]; !(p.w < 0) && id[k] < slots && isFinite(vec3(p)) && solids.insideAdded(vec3(p), params.spacing))
+                inside.push_back(k);
+        remembered = method->remembered();
     } catch (const std::bad_alloc&) {
         return noMemory("there is not enough memory to find the particles inside a wall: they stay");
     }
-    const std::vector<uint32_t> id = device->readAll<uint32_t>(particles.id, particles.count);
-    std::vector<uint32_t> inside;
-    for (uint32_t k = 0; k < particles.count; ++k)
-        if (const vec4& p = (*read)[k]; !(p.w < 0) && id[k] < slots && isFinite(vec3(p)) && solids.insideAdded(vec3(p), params.spacing))
-            inside.push_back(k);
     if (inside.empty()) return ok();
     Result<ExchangePasses> passes = ExchangePasses::create(*device);
     if (!passes) return passes.error();
     invalidateCells();
-    const std::vector<NamedBuffer> remembered = method->remembered();
     for (std::span<const uint32_t> rest = inside; !rest.empty();) {
         const std::span<const uint32_t> some = rest.first(std::min(rest.size(), ExchangePasses::kMost));
         passes->take(step, *grid, particles, remembered, some, sorted);

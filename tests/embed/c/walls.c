@@ -1,5 +1,6 @@
 /* Walls, emitters and sinks that come and go while a world runs. */
 #define _POSIX_C_SOURCE 200809L
+#include <math.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -205,6 +206,19 @@ static void what_cannot_be_is_refused(rivulet_context* context) {
     REFUSED(rivulet_world_add_wall(NULL, &wall, &id, &why), "NULL");
     REFUSED(rivulet_world_add_wall(world, NULL, &id, &why), "NULL");
     REFUSED(rivulet_world_add_wall(world, &wall, NULL, &why), "NULL");
+    wall.restitution = 5; /* and nothing of it stays: the next wall is baked and acts */
+    REFUSED(rivulet_world_add_wall(world, &wall, &id, &why), "restitution 5");
+    wall.restitution = NAN;
+    REFUSED(rivulet_world_add_wall(world, &wall, &id, &why), "restitution");
+    wall.restitution = -1;
+    uint32_t sound = 0;
+    DONE(rivulet_world_add_wall(world, &wall, &sound, &why));
+    for (int frame = 0; frame < 2000 && state != RIVULET_WALL_ACTS; ++frame) {
+        DONE(rivulet_world_step(world, NULL, 1e-4, &why));
+        DONE(rivulet_world_wall(world, sound, &state, &why));
+    }
+    CHECK(state == RIVULET_WALL_ACTS);
+    DONE(rivulet_world_remove_wall(world, sound, &why));
     REFUSED(rivulet_world_remove_wall(NULL, 0, &why), "NULL");
     REFUSED(rivulet_world_wall(NULL, 0, &state, &why), "NULL");
     REFUSED(rivulet_world_wall(world, 0, NULL, &why), "NULL");

@@ -373,7 +373,8 @@ HostState::HostState(Saves saves) : kept_(std::make_unique<Kept>()) {
     kept_->saves = saves;
     if (saves != nothing) {
         kept_->take();
-        Kept::plain(*kept_).put(kept_.get());
+        plain_ = std::make_unique<Kept>(Kept::plain(*kept_));
+        plain_->put(kept_.get());
         return;
     }
     kept_->takeDepth();
@@ -382,17 +383,17 @@ HostState::HostState(Saves saves) : kept_(std::make_unique<Kept>()) {
         for (GLuint k = 0; k < range.count; ++k) kept_->units.push_back({.unit = range.first + k});
     kept_->storage.resize(kStorage);
     kept_->uniform.resize(kUniform);
-    Kept::plain(*kept_).put(nullptr);
+    plain_ = std::make_unique<Kept>(Kept::plain(*kept_));
+    plain_->put(nullptr);
 }
 
 HostState::~HostState() {
-    const Kept plain = Kept::plain(*kept_);
     if (kept_->saves == nothing) {
-        plain.putBindings();
+        plain_->putBindings();
         return;
     }
     kept_->putBindings();
-    kept_->put(kept_->all() ? nullptr : &plain);
+    kept_->put(kept_->all() ? nullptr : plain_.get());
 }
 
 const HostDepth& HostState::depth() const { return kept_->depth; }

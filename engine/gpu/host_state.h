@@ -42,7 +42,7 @@ class HostState {
 
   private:
     struct Kept;
-    std::unique_ptr<Kept> kept_;
+    std::unique_ptr<Kept> kept_, plain_;  // of the host; as it is within the scope
 };
 
 }  // namespace rivulet::gpu

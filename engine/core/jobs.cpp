@@ -4,6 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <memory>
+#include <mutex>
+#include <new>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -164,11 +167,14 @@ class Arena : public tbb::task_scheduler_observer {
   public:
     explicit Arena(int threads) : Arena(std::make_unique<tbb::task_arena>(threads)) {}
     ~Arena() override {
+        wait();
+        observe(false);
+    }
+    // Until its threads have left it. Idle threads leave within milliseconds.
+    void wait() const {
         using namespace std::chrono;
-        // Idle threads leave within milliseconds.
         const auto last = steady_clock::now() + seconds(1);
         while (within_.load() > 0 && steady_clock::now() < last) std::this_thread::sleep_for(microseconds(50));
-        observe(false);
     }
     void on_scheduler_entry(bool worker) override { within_ += worker ? 1 : 0; }
     void on_scheduler_exit(bool worker) override { within_ -= worker ? 1 : 0; }
@@ -178,8 +184,35 @@ class Arena : public tbb::task_scheduler_observer {
     explicit Arena(std::unique_ptr<tbb::task_arena> arena) : tbb::task_scheduler_observer(*arena), arena_(std::move(arena)) {
         observe(true);
     }
-    std::unique_ptr<tbb::task_arena> arena_;  // oneTBB never frees its few kB
+    std::unique_ptr<tbb::task_arena> arena_;
     std::atomic<int> within_ = 0;
+};
+
+// Arenas that are not in use, with their numbers of threads: oneTBB never frees the 7 kB of one, so that the next Workers get it.
+struct FreeArenas {
+    std::mutex mutex;
+    std::vector<std::pair<int, std::unique_ptr<Arena>>> all;
+
+    static FreeArenas& here() {
+        static FreeArenas free;
+        return free;
+    }
+    std::unique_ptr<Arena> take(int threads) {
+        const std::scoped_lock lock(mutex);
+        const auto at = std::find_if(all.begin(), all.end(), [threads](const auto& one) { return one.first == threads; });
+        if (at == all.end()) return nullptr;
+        std::unique_ptr<Arena> found = std::move(at->second);
+        all.erase(at);
+        return found;
+    }
+    void give(int threads, std::unique_ptr<Arena> arena) {
+        arena->wait();
+        const std::scoped_lock lock(mutex);
+        try {
+            all.emplace_back(threads, std::move(arena));
+        } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): one arena less
+        }
+    }
 };
 
 }  // namespace
@@ -187,7 +220,11 @@ class Arena : public tbb::task_scheduler_observer {
 
 struct Workers::Impl {
 #ifndef RIVULET_WITHOUT_TBB
-    std::optional<Arena> arena;
+    std::unique_ptr<Arena> arena;
+    int threads = 0;
+    ~Impl() {
+        if (arena) FreeArenas::here().give(threads, std::move(arena));
+    }
 #endif
     std::optional<ThreadPool> pool;
     Jobs jobs;
@@ -196,7 +233,12 @@ struct Workers::Impl {
 Workers::Workers(int threads) : impl_(std::make_unique<Impl>()) {
     if (kTbb) {
 #ifndef RIVULET_WITHOUT_TBB
-        if (threads > 0) impl_->jobs = {&impl_->arena.emplace(threads).arena(), runInArena, threads};
+        if (threads > 0) {
+            impl_->arena = FreeArenas::here().take(threads);
+            if (!impl_->arena) impl_->arena = std::make_unique<Arena>(threads);
+            impl_->threads = threads;
+            impl_->jobs = {&impl_->arena->arena(), runInArena, threads};
+        }
 #endif
         return;
     }

@@ -34,7 +34,7 @@ UiLayer::~UiLayer() = default;
 
 namespace {
 
-// Dear ImGui's number of a key and GLFW's.
+// Pairs of key codes: Dear ImGui's, GLFW's.
 constexpr std::pair<int, int> kKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
                                          {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
                                          {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
@@ -57,7 +57,7 @@ constexpr std::pair<int, int> kKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
                                          {ImGuiKey_Y, GLFW_KEY_Y},
                                          {ImGuiKey_Z, GLFW_KEY_Z}};
 
-// The keys that are down in this frame. Dear ImGui takes them as events since 1.89 and as tables before.
+// Passes the keys that are down in this frame to Dear ImGui: as events from version 1.89 on, in tables before.
 void setKeys(ImGuiIO& io, const std::vector<int>& down) {
     const auto isDown = [&down](int key) { return std::find(down.begin(), down.end(), key) != down.end(); };
     const bool control = isDown(GLFW_KEY_LEFT_CONTROL) || isDown(GLFW_KEY_RIGHT_CONTROL);

@@ -30,7 +30,7 @@ namespace {
 
 // Of each thread, without a destructor: a library that is unloaded leaves none behind.
 thread_local Jobs current;
-thread_local bool alone = false;  // within a call of Jobs::run, whose loops do not nest
+thread_local bool alone = false;  // this thread runs a part of Jobs::run: a loop inside it runs on this thread
 
 #ifndef RIVULET_WITHOUT_TBB
 constexpr bool kTbb = !kThreadSanitized;

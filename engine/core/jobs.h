@@ -11,7 +11,7 @@
 
 namespace rivulet {
 
-// Results are the same bit for bit for any jobs and any number of workers, but for foam, whose slots depend on the order of threads.
+// Results do not depend on the jobs or the number of workers, bit for bit. Foam is an exception: its slots depend on the order of threads.
 struct Jobs {
     void* user = nullptr;  // passed to `run`
     // Calls function(argument, k) once for each k from 0 to count - 1, in any order, on any threads, and returns when all calls have

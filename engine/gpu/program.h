@@ -33,7 +33,7 @@ class Program {
     // Reads the files again. On failure (as create, or a uniform that was set is no longer declared) the last valid program is kept. After
     // success uniforms may have their defaults: set them in each frame.
     Status reload();
-    // The same for several programs: on failure none changes. Only programs whose text has changed are compiled; their number is returned.
+    // The same for several programs: on failure none changes. Compiles the programs whose text has changed and returns their number.
     // `fits` is called for each compiled programs[k] with its new GL name; its Error is a failure too.
     using Fits = std::function<Status(size_t k, unsigned name)>;
     static Result<size_t> reload(std::span<Program* const> programs, const Fits& fits = {});

@@ -29,7 +29,7 @@ RIVULET_API rivulet_status rivulet_world_sample_later(rivulet_world* world, cons
  */
 typedef struct rivulet_float {
     size_t size;
-    const float* points;  /* m, 3 each, in the object's frame, whose origin is its centre of mass: about a spacing apart or wider */
+    const float* points;  /* m, 3 each, in the object's frame, whose origin is its centre of mass; at least a spacing apart */
     const float* volumes; /* m^3, one a point: they add up to the object's volume */
     size_t points_count;
     float mass;                        /* kg */

@@ -98,9 +98,9 @@ class FluidWorld {
     // may be destroyed when this returns. Nothing else of the world changes: without walls that differ, its steps are the same bit for bit.
     // A wall that is added does not move the water aside. Particles inside it, or behind a plane, are removed if `removeInside`, and their
     // number is added to FluidStats::drained; where memory for that is short they stay, and the log says so. Else they stay, and collisions
-    // push them out through its nearest side or keep them where they are. Error (badInput): with fluid.wetness.on, or in a box that is
-    // periodic along all axes and began without walls, whose kernels know none; as create; (failed): out of memory. Nothing has changed
-    // then.
+    // push them out through its nearest side or keep them where they are. Error (badInput): fluid.wetness.on is on; the box is periodic
+    // along all axes and the world was created without walls, so that its kernels have no code for them; as create. (failed): out of
+    // memory. Nothing has changed then.
     Status mayChangeWalls() const;  // the first of these
     Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
 

@@ -7,16 +7,14 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
-#include <optional>
 
 #include "engine/app/capture.h"
-#include "engine/app/context_egl.h"
-#include "engine/gpu/device_gl.h"
 #include "engine/gpu/host_state.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
 #include "fluid/render/water_renderer.h"
 #include "tests/unit/host_fixture.h"
+#include "tests/unit/host_water.h"
 
 namespace rivulet::any_view_test {
 namespace {
@@ -41,29 +39,12 @@ struct Drawn {
     }
 };
 
-class WaterInAnyView : public ::testing::Test {
+class WaterInAnyView : public testing::HostWater {
   protected:
-    void SetUp() override {
-        Result<ContextEgl> context = ContextEgl::create();
-        if (!context) GTEST_SKIP() << context.error().message;
-        context_.emplace(std::move(*context));
-        device_ = makeGlDevice(ShaderFiles::developer());
-        auto world = FluidWorld::create(*device_, HostScene::water(), {}, {});
-        ASSERT_TRUE(world);
-        world_ = std::move(*world);
-        for (int k = 0; k < 8; ++k) world_->step({}, 1.0 / 60);
-        device_->finish();
-        auto renderer = WaterRenderer::create({});
-        ASSERT_TRUE(renderer) << renderer.error().message;
-        renderer_ = std::move(*renderer);
-    }
+    WaterInAnyView() : HostWater(8) {}
     void TearDown() override {
-        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
-        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
         for (gpu::Buffer* buffer : {&drops_, &foam_[0], &foam_[1], &pendants_}) *buffer = {};
-        renderer_.reset();
-        world_.reset();
-        device_.reset();
+        HostWater::TearDown();
     }
     // Files of this name go to $RIVULET_PICTURES, for a person to look at.
     Drawn draw(const char* name, const HostScene::Options& options, const RendererRow* row = nullptr, const FluidLook& look = {}) {
@@ -72,7 +53,7 @@ class WaterInAnyView : public ::testing::Test {
         Drawn drawn;
         drawn.before = host.pixels();
         drawn.placesBefore = host.places();
-        FluidView fluid = HostScene::viewOf(*world_);
+        FluidView fluid = testing::viewOf(*world_);
         if (drops_) {
             fluid.drops = drops_.name();
             fluid.dropCount = 1;
@@ -118,10 +99,6 @@ class WaterInAnyView : public ::testing::Test {
         EXPECT_GT(static_cast<double>(water) / all, 0.1);
     }
 
-    std::optional<ContextEgl> context_;
-    std::unique_ptr<Device> device_;
-    std::unique_ptr<FluidWorld> world_;
-    std::unique_ptr<WaterRenderer> renderer_;
     gpu::Buffer drops_, foam_[2], pendants_;
 };
 
@@ -317,7 +294,7 @@ TEST_F(WaterInAnyView, IsThePictureOfAPlainOrthographicOne) {
 TEST_F(WaterInAnyView, ShowsTwoWorlds) {
     std::array<std::unique_ptr<FluidWorld>, 2> worlds;
     for (size_t k = 0; k < 2; ++k) {
-        FluidParams params = HostScene::water();
+        FluidParams params = testing::hostWater();
         params.box = {vec3(k == 0 ? -0.1F : 0.65F, 0.0F, 0.2F), vec3(k == 0 ? 0.35F : 1.1F, 0.6F, 0.7F)};
         params.blocks = {{params.box.min, vec3(params.box.max.x, 0.3F, params.box.max.z), vec3(0.0F)}};
         auto world = FluidWorld::create(*device_, params, {}, {});
@@ -330,7 +307,7 @@ TEST_F(WaterInAnyView, ShowsTwoWorlds) {
         const gpu::HostState scope;
         for (size_t k = 0; k < 2; ++k)
             if (k == 0 ? first : second) {
-                const Status drawn = renderer_->draw(scope, host.view(), HostScene::viewOf(*worlds[k]), {}, host.target());
+                const Status drawn = renderer_->draw(scope, host.view(), testing::viewOf(*worlds[k]), {}, host.target());
                 EXPECT_TRUE(drawn) << drawn.error().message;
             }
         return host.pixels();
@@ -358,7 +335,7 @@ TEST_F(WaterInAnyView, NeedsNoDepthBuffer) {
     glClearNamedFramebufferfv(with.target().framebuffer, GL_DEPTH, 0, std::array<float, 1>{1.0F}.data());
     glNamedFramebufferRenderbuffer(without.target().framebuffer, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, 0);
     for (const HostScene* host : {&with, &without}) {
-        const Status drawn = renderer_->draw(host->view(), HostScene::viewOf(*world_), {}, host->target());
+        const Status drawn = renderer_->draw(host->view(), testing::viewOf(*world_), {}, host->target());
         EXPECT_TRUE(drawn) << drawn.error().message;
     }
     EXPECT_EQ(with.pixels(), without.pixels());
@@ -368,7 +345,7 @@ TEST_F(WaterInAnyView, NeedsNoDepthBuffer) {
 TEST_F(WaterInAnyView, FollowsAResize) {
     const auto picture = [&](WaterRenderer& renderer, int width, int height) {
         const HostScene host(width, height);
-        const Status drawn = renderer.draw(host.view(), HostScene::viewOf(*world_), {}, host.target());
+        const Status drawn = renderer.draw(host.view(), testing::viewOf(*world_), {}, host.target());
         EXPECT_TRUE(drawn) << drawn.error().message;
         return host.pixels();
     };
@@ -384,7 +361,7 @@ TEST_F(WaterInAnyView, FollowsAResize) {
 // What cannot be drawn is refused in one sentence that names the remedy.
 TEST_F(WaterInAnyView, IsRefusedWhereThereIsNoCamera) {
     const HostScene host(kWidth, kHeight);
-    const FluidView fluid = HostScene::viewOf(*world_);
+    const FluidView fluid = testing::viewOf(*world_);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto refusedFor = [&](const char* word, const std::function<void(FrameView&)>& spoil) {
         FrameView view = host.view();

@@ -13,9 +13,7 @@
 #include <vector>
 
 #include "engine/render/frame_view.h"
-#include "fluid/render/fluid_view.h"
 #include "fluid/render/host_target.h"
-#include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/host_picture.h"
 
 namespace rivulet::testing {
@@ -137,28 +135,6 @@ class HostScene {
                 all.emplace_back(glm::dvec3(at) / at.w);
             }
         return all;
-    }
-
-    // A block of water that has just begun to fall, on backend gl or another.
-    static FluidParams water() {
-        FluidParams f;
-        f.spacing = 0.04F;
-        f.box.max = vec3(1.0F, 1.0F, 1.0F);
-        f.blocks = {{vec3(0.1F, 0.0F, 0.2F), vec3(0.9F, 0.4F, 0.8F), vec3(0.0F)}};
-        return f;
-    }
-    static FluidView viewOf(const FluidWorld& world) {
-        const ParticleView p = world.particles();
-        FluidView v;
-        v.position = static_cast<unsigned>(p.drawn->handle());
-        v.velocity = static_cast<unsigned>(p.velocity->handle());
-        v.id = static_cast<unsigned>(p.id->handle());
-        v.count = p.slots;
-        v.spacing = p.spacing;
-        v.radius = 0.55F * p.spacing;
-        v.bounds.add(world.params().box.min);
-        v.bounds.add(world.params().box.max);
-        return v;
     }
 
   private:

@@ -6,13 +6,11 @@
 
 #include <algorithm>
 #include <functional>
-#include <optional>
 
 #include "engine/app/capture.h"
-#include "engine/app/context_egl.h"
-#include "engine/gpu/device_gl.h"
 #include "fluid/render/renderers.h"
 #include "tests/unit/host_fixture.h"
+#include "tests/unit/host_water.h"
 
 namespace rivulet::water_renderer_test {
 namespace {
@@ -20,41 +18,17 @@ namespace {
 using testing::HostScene;
 constexpr int kWidth = 160, kHeight = 120;
 
-class WaterInAHostsPicture : public ::testing::Test {
+class WaterInAHostsPicture : public testing::HostWater {
   protected:
-    void SetUp() override {
-        Result<ContextEgl> context = ContextEgl::create();
-        if (!context) GTEST_SKIP() << context.error().message;
-        context_.emplace(std::move(*context));
-        device_ = makeGlDevice(ShaderFiles::developer());
-        auto world = FluidWorld::create(*device_, HostScene::water(), {}, {});
-        ASSERT_TRUE(world);
-        world_ = std::move(*world);
-        for (int k = 0; k < 4; ++k) world_->step({}, 1.0 / 60);
-        device_->finish();
-        auto renderer = WaterRenderer::create({});
-        ASSERT_TRUE(renderer) << renderer.error().message;
-        renderer_ = std::move(*renderer);
-    }
-    void TearDown() override {
-        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
-        renderer_.reset();
-        world_.reset();
-        device_.reset();
-    }
+    WaterInAHostsPicture() : HostWater(4) {}
     Status draw(const HostScene& host, const RendererRow* row = nullptr) {
-        return renderer_->draw(host.view(), HostScene::viewOf(*world_), {}, host.target(), row);
+        return renderer_->draw(host.view(), testing::viewOf(*world_), {}, host.target(), row);
     }
     static double meanDifference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
         double sum = 0;
         for (size_t k = 0; k < a.size(); ++k) sum += glm::dot(glm::abs(vec3(a[k]) - vec3(b[k])), vec3(1.0F / 3));
         return sum / static_cast<double>(a.size());
     }
-
-    std::optional<ContextEgl> context_;
-    std::unique_ptr<Device> device_;
-    std::unique_ptr<FluidWorld> world_;
-    std::unique_ptr<WaterRenderer> renderer_;
 };
 
 // The box that the water is in, as the picture has it: all that may change.
@@ -137,7 +111,7 @@ TEST_F(WaterInAHostsPicture, FormatsAndConventionsMakeNoDifference) {
 
 TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
     const HostScene host(kWidth, kHeight);
-    const FluidView fluid = HostScene::viewOf(*world_);
+    const FluidView fluid = testing::viewOf(*world_);
     const auto said = [&](const FrameView& view, const HostTarget& target) {
         const Status drawn = renderer_->draw(view, fluid, {}, target);
         return drawn ? std::string() : drawn.error().message;

@@ -1,0 +1,82 @@
+// HostWater: a context of its own, a world on backend gl and a renderer, for tests that draw into a HostScene.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
+#include "engine/app/context_egl.h"
+#include "engine/gpu/device_gl.h"
+#include "fluid/render/fluid_view.h"
+#include "fluid/render/water_renderer.h"
+#include "fluid/sim/world/fluid_world.h"
+#include "tests/unit/host_fixture.h"
+
+namespace rivulet::testing {
+
+// Without OpenGL a test is skipped; with RIVULET_TEST_DEVICES, as tests/run.sh sets it, it fails.
+inline bool mayLackOpenGl() { return std::getenv("RIVULET_TEST_DEVICES") == nullptr; }
+
+// A block of water that is about to fall.
+inline FluidParams hostWater() {
+    FluidParams f;
+    f.spacing = 0.04F;
+    f.box.max = vec3(1.0F, 1.0F, 1.0F);
+    f.blocks = {{vec3(0.1F, 0.0F, 0.2F), vec3(0.9F, 0.4F, 0.8F), vec3(0.0F)}};
+    return f;
+}
+
+// Of a world on backend gl.
+inline FluidView viewOf(const FluidWorld& world) {
+    const ParticleView p = world.particles();
+    FluidView v;
+    v.position = static_cast<unsigned>(p.drawn->handle());
+    v.velocity = static_cast<unsigned>(p.velocity->handle());
+    v.id = static_cast<unsigned>(p.id->handle());
+    v.count = p.slots;
+    v.spacing = p.spacing;
+    v.radius = 0.55F * p.spacing;
+    v.bounds.add(world.params().box.min);
+    v.bounds.add(world.params().box.max);
+    return v;
+}
+
+class HostWater : public ::testing::Test {
+  protected:
+    explicit HostWater(int frames) : frames_(frames) {}
+    void SetUp() override {
+        Result<ContextEgl> context = ContextEgl::create();
+        if (!context) {
+            ASSERT_TRUE(mayLackOpenGl()) << context.error().message;
+            GTEST_SKIP() << context.error().message;
+        }
+        context_.emplace(std::move(*context));
+        device_ = makeGlDevice(ShaderFiles::developer());
+        auto world = FluidWorld::create(*device_, hostWater(), {}, {});
+        ASSERT_TRUE(world) << world.error().message;
+        world_ = std::move(*world);
+        for (int k = 0; k < frames_; ++k) world_->step({}, 1.0 / 60);
+        device_->finish();
+        auto renderer = WaterRenderer::create({});
+        ASSERT_TRUE(renderer) << renderer.error().message;
+        renderer_ = std::move(*renderer);
+    }
+    void TearDown() override {
+        if (!context_) return;
+        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+        renderer_.reset();
+        world_.reset();
+        device_.reset();
+    }
+
+    int frames_;  // of 1/60 s that the water has fallen
+    std::optional<ContextEgl> context_;
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<FluidWorld> world_;
+    std::unique_ptr<WaterRenderer> renderer_;
+};
+
+}  // namespace rivulet::testing

@@ -47,6 +47,11 @@ looked="$(grep -iE '^(imgui|egl|assimp|bullet|glfw3?|CLI11|GTest)[A-Za-z_]*(_DIR
 check
 configure add_subdirectory
 check
+# Where OpenGL is too old, what is left is said.
+cmake -S "$work/repository" -B mac -G Ninja -DAPPLE=ON >"$work/log" 2>&1 || { tail -60 "$work/log"; echo "this failed: configuring as on macOS"; exit 1; }
+grep -q 'macOS has OpenGL 4.1.*backends cpu and cl' "$work/log" || { echo "on macOS, CMake does not say what is left"; exit 1; }
+if cmake -S "$work/repository" -B mac -DRIVULET_PROGRAM=ON >"$work/log" 2>&1; then echo "the program is not refused on macOS"; exit 1; fi
+tr -s ' \n' ' ' <"$work/log" | grep -q 'set RIVULET_PROGRAM to OFF' || { cat "$work/log"; echo "the remedy is missing"; exit 1; }
 # Nothing is written into the source, nor into the host's folder outside our part.
 [ -z "$(git -C build/_deps/rivulet-src status --porcelain)" ] || { git -C build/_deps/rivulet-src status; echo "the build writes into the source"; exit 1; }
 outside="$(find build -mindepth 1 -maxdepth 1 -printf '%f\n' | grep -vE '^(\.cmake|_deps|CMakeCache.txt|CMakeFiles|\.ninja_(deps|log)|build.ninja|cmake_install.cmake|host_c|host_cpp|without_opencl)$' || true)"

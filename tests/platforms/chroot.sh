@@ -9,6 +9,7 @@ command -v debootstrap >/dev/null || fail "debootstrap is not installed; run: ap
 
 # system_of SUITE [ARCHITECTURE]: makes it if it is missing, with this source tree at /src; $system is its folder.
 system_of() {
+    [ -z "${system:-}" ] || unmount
     system="$systems/$1"
     mkdir -p "$systems"
     if [ ! -f "$system/made" ]; then
@@ -38,4 +39,20 @@ inside() {
 # packages NAME...: installs them in the system.
 packages() {
     inside apt-get -q install -y --no-install-recommends "$@" >"$system/packages.log" 2>&1 || fail "these packages could not be installed in $system: $*"
+}
+
+# source_of NAME PACKAGE FOLDER [CMake options]: the source in FOLDER of a Debian package, built by the toolchain file /NAME.cmake into /NAME.
+source_of() {
+    inside bash -c '
+        set -e
+        into="/$1" package="$2" folder="$3"
+        mkdir -p "$into/sources" && cd "$into/sources"
+        [ -f "$package.built" ] && exit 0
+        mkdir -p "$package" && cd "$package"
+        apt-get -q source --download-only "$package" || [ -n "$(ls ./*.orig.tar.* 2>/dev/null)" ]
+        mkdir -p tree && tar xf ./*.orig.tar.* --strip-components=1 -C tree
+        cmake -S "tree/$folder" -B build -G Ninja -DCMAKE_TOOLCHAIN_FILE="$into.cmake" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
+            -DCMAKE_INSTALL_PREFIX="$into" "${@:4}"
+        cmake --build build --target install
+        touch "../$package.built"' _ "$@" >"$system/$2.log" 2>&1 || fail "$2 could not be built; its log is $system/$2.log."
 }

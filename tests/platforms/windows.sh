@@ -17,24 +17,10 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 END
-# source_of PACKAGE FOLDER [CMake options]: its source in FOLDER of the package, built and installed into /windows.
-source_of() {
-    inside bash -c '
-        set -e
-        mkdir -p /windows/sources && cd /windows/sources
-        [ -f "$1.built" ] && exit 0
-        mkdir -p "$1" && cd "$1"
-        apt-get -q source --download-only "$1" || [ -n "$(ls ./*.orig.tar.* 2>/dev/null)" ]
-        mkdir -p tree && tar xf ./*.orig.tar.* --strip-components=1 -C tree
-        cmake -S "tree/$2" -B build -G Ninja -DCMAKE_TOOLCHAIN_FILE=/windows.cmake -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
-            -DCMAKE_INSTALL_PREFIX=/windows "${@:3}"
-        cmake --build build --target install
-        touch "../$1.built"' _ "$@" >"$system/$1.log" 2>&1 || fail "$1 could not be built; its log is $system/$1.log."
-}
-source_of fmtlib . -DFMT_TEST=OFF -DFMT_DOC=OFF
-source_of libjsoncpp . -DJSONCPP_WITH_TESTS=OFF -DJSONCPP_WITH_POST_BUILD_UNITTEST=OFF -DBUILD_OBJECT_LIBS=OFF
-source_of xxhash cmake_unofficial -DXXHASH_BUILD_XXHSUM=OFF
-source_of libzstd build/cmake -DZSTD_BUILD_PROGRAMS=OFF -DZSTD_BUILD_SHARED=OFF
+source_of windows fmtlib . -DFMT_TEST=OFF -DFMT_DOC=OFF
+source_of windows libjsoncpp . -DJSONCPP_WITH_TESTS=OFF -DJSONCPP_WITH_POST_BUILD_UNITTEST=OFF -DBUILD_OBJECT_LIBS=OFF
+source_of windows xxhash cmake_unofficial -DXXHASH_BUILD_XXHSUM=OFF
+source_of windows libzstd build/cmake -DZSTD_BUILD_PROGRAMS=OFF -DZSTD_BUILD_SHARED=OFF
 # Headers alone, which are for every system.
 inside bash -c 'mkdir -p /windows/include /windows/lib/cmake/glm && cp -r /usr/include/glm /usr/include/stb /windows/include/
     printf "add_library(glm::glm INTERFACE IMPORTED)\nset_target_properties(glm::glm PROPERTIES INTERFACE_INCLUDE_DIRECTORIES /windows/include)\n" \

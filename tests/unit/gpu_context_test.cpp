@@ -181,8 +181,20 @@ TEST(GpuWindow, HasItsSizeItsPixelsAndItsEvents) {
     const char* paths[] = {"/a/scene.json", "/b.obj"};
     drop(w, 2, paths);
 
-    EXPECT_TRUE(ImGui::GetIO().KeysDown[GLFW_KEY_A]);
-    EXPECT_EQ(ImGui::GetIO().MouseWheel, 3.0F);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;  // no file is written
+    io.DisplaySize = ImVec2(400, 100);
+    io.Fonts->Build();
+#if IMGUI_VERSION_NUM >= 18700
+    io.ConfigInputTrickleEventQueue = false;  // all events in the next frame
+    ImGui::NewFrame();
+    EXPECT_TRUE(ImGui::IsKeyDown(ImGuiKey_A));
+#else
+    ImGui::NewFrame();
+    EXPECT_TRUE(io.KeysDown[GLFW_KEY_A]);
+#endif
+    EXPECT_EQ(io.MouseWheel, 3.0F);
+    ImGui::EndFrame();
     InputEvents events = window.poll();
     EXPECT_EQ(events.keysPressed, (std::vector<int>{GLFW_KEY_A, GLFW_KEY_B}));
     EXPECT_TRUE(events.down(GLFW_KEY_A));

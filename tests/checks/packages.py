@@ -83,7 +83,8 @@ class ConanFile:
         self.options = types.SimpleNamespace(**{name: values[0] for name, values in self.options.items()})
 
     def requires(self, reference, **_):
-        check(re.fullmatch(r"[a-z0-9_+.-]{2,101}/[A-Za-z0-9_+.-]+", reference), f"conanfile.py: {reference!r} is not NAME/VERSION")
+        version = r"[A-Za-z0-9_+.-]+|\[[<>]=?[0-9.]+( <[0-9.]+)?\]"
+        check(re.fullmatch(rf"[a-z0-9_+.-]{{2,101}}/({version})", reference), f"conanfile.py: {reference!r} is not NAME/VERSION or NAME/[RANGE]")
         self.required[reference.split("/")[0]] = reference
 
     def tool_requires(self, reference):

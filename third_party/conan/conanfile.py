@@ -34,17 +34,17 @@ class Rivulet(ConanFile):
         cmake_layout(self)
 
     def requirements(self):
-        self.requires("glm/1.0.1", transitive_headers=True)
-        self.requires("eigen/3.4.0", visible=False)
-        self.requires("stb/cci.20240531", visible=False)
-        for library in ("fmt/10.2.1", "jsoncpp/1.9.5", "onetbb/2021.12.0", "xxhash/0.8.2", "zstd/1.5.6"):
+        self.requires("glm/[>=0.9.9 <2]", transitive_headers=True)
+        self.requires("eigen/[>=3.4 <4]", visible=False)
+        self.requires("stb/cci.20240213", visible=False)
+        for library in ("fmt/[>=9 <12]", "jsoncpp/[>=1.9.5 <2]", "onetbb/[>=2021.8 <2023]", "xxhash/[>=0.8 <1]", "zstd/[>=1.5 <2]"):
             self.requires(library)
         if self.options.opencl:
-            self.requires("opencl-icd-loader/2023.12.14")
+            self.requires("opencl-icd-loader/[>=2021]")
 
     def build_requirements(self):
         self.tool_requires("cmake/[>=3.25]")
-        self.tool_requires("pkgconf/2.2.0")
+        self.tool_requires("pkgconf/[>=2 <3]")
 
     def validate(self):
         check_min_cppstd(self, 20)

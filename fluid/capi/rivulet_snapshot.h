@@ -28,7 +28,7 @@ typedef struct rivulet_snapshot rivulet_snapshot;
 /* An empty snapshot, for worlds of this context. It counts as one of them: destroy it before the context. */
 RIVULET_API rivulet_status rivulet_snapshot_create(rivulet_context* context, rivulet_snapshot** snapshot, rivulet_error* why);
 RIVULET_API void rivulet_snapshot_destroy(rivulet_snapshot* snapshot);
-/* Copies the particles, foam, ellipsoids and wetness of the world as they are now, and its look, in place of what the snapshot held. With
+/* Copies the particles, foam, ellipsoids, wetness and drops of skins of the world as they are now, and its look, in place of what the snapshot held. With
    backend cpu and cl no OpenGL is used. The world may be destroyed before the snapshot. */
 RIVULET_API rivulet_status rivulet_world_snapshot(rivulet_world* world, rivulet_snapshot* snapshot, rivulet_error* why);
 /* Records what is drawn of the world into a file: each rivulet_world_step from now on adds its frame, which waits for a GPU. path NULL:
@@ -47,7 +47,8 @@ RIVULET_API rivulet_status rivulet_snapshot_replay(rivulet_snapshot* snapshot, c
                                                    rivulet_recorded* recorded, rivulet_error* why);
 /* As rivulet_world_draw and rivulet_world_buffers, of the world as it was. RIVULET_BAD_INPUT: the snapshot is empty. The buffers are valid
    until the snapshot is filled, drawn or destroyed. Call rivulet_world_wet_solid when you take the snapshot: after the next step it
-   describes the new state. Drops of rivulet_world_step_skins are not part of a snapshot. */
+   describes the new state. A second draw of the same
+   contents, of another eye say, uploads nothing. */
 RIVULET_API rivulet_status rivulet_snapshot_draw(rivulet_snapshot* snapshot, const rivulet_view* view, const rivulet_target* target,
                                                  rivulet_error* why);
 RIVULET_API rivulet_status rivulet_snapshot_buffers(rivulet_snapshot* snapshot, rivulet_buffers* buffers, rivulet_error* why);

@@ -89,7 +89,7 @@ rivulet_status rivulet_world_snapshot(rivulet_world* world, rivulet_snapshot* sn
         if (!mine.mine()) return inUse();
         snapshot->look = world->params.look;
         snapshot->liquid = world->params.fluid.liquid;
-        return snapshot->taken.take(*world->world);
+        return snapshot->taken.take(*world->world, world->fallingDrops, world->hangingDrops);
     });
 }
 

@@ -8,8 +8,11 @@
 
 namespace rivulet {
 
-Status FluidSnapshot::take(const FluidWorld& world) {
+Status FluidSnapshot::take(const FluidWorld& world, std::span<const vec4> drops, std::span<const vec4> pendants) {
     taken_ = false;
+    revision_ = std::make_shared<const char>();
+    drops_.assign(drops.begin(), drops.end());
+    pendants_.assign(pendants.begin(), pendants.end());
     Device& device = world.device();
     onGpu_ = device.backend() == Backend::gl;
     viscosity_ = world.particles().viscosity;
@@ -28,6 +31,9 @@ Status FluidSnapshot::take(const FluidWorld& world) {
 
 void FluidSnapshot::take(RecordedFrame frame, float viscosity) {
     frame_ = std::move(frame);
+    revision_ = std::make_shared<const char>();
+    drops_.clear();
+    pendants_.clear();
     viscosity_ = viscosity;
     wetSurface_ = nullptr;
     onGpu_ = false;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/compute/device.h"
@@ -20,8 +21,9 @@ class FluidWorld;
 
 class FluidSnapshot {
   public:
-    // Copies the world as it is now, in place of what it held. Error (failed): out of memory; the snapshot is empty then.
-    Status take(const FluidWorld& world);
+    // Copies the world as it is now, in place of what it held. `drops`, `pendants`: of skins, as FluidView has them. Error (failed): out of
+    // memory; the snapshot is empty then.
+    Status take(const FluidWorld& world, std::span<const vec4> drops = {}, std::span<const vec4> pendants = {});
     // Holds a recorded frame instead. viscosity: Pa s, of its liquid.
     void take(RecordedFrame frame, float viscosity);
     bool empty() const { return !taken_; }
@@ -32,10 +34,12 @@ class FluidSnapshot {
     Status takeOnGpu(const FluidWorld& world);
 
     bool taken_ = false, onGpu_ = false;
+    std::shared_ptr<const void> revision_;  // a new one with each take
     RecordedFrame frame_;  // of cpu and cl: all; of gl: time, spacing, box
     float viscosity_ = 0;
     std::shared_ptr<const WetSurface> wetSurface_;
     std::vector<float> wetness_;  // of cpu and cl
+    std::vector<vec4> drops_, pendants_;
     // Of gl.
     struct Copy {
         Buffer memory;

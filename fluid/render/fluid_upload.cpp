@@ -86,6 +86,36 @@ void FluidUpload::follow(std::shared_ptr<const GlSharing> sharing) {
     refused_.clear();
 }
 
+bool FluidUpload::holds(const std::shared_ptr<const void>& revision, const FluidLookParams& look, bool normals) const {
+    return revision && last_.revision == revision && last_.radiusSpacings == look.radiusSpacings && last_.normals == normals &&
+           last_.ellipsoids == (look.splats == "ellipsoids") && last_.hurried == (look.quality != "fine");
+}
+
+void FluidUpload::hold(std::shared_ptr<const void> revision, const FluidLookParams& look, bool normals, const FluidView& view) {
+    last_ = {.revision = std::move(revision),
+             .radiusSpacings = look.radiusSpacings,
+             .normals = normals,
+             .ellipsoids = look.splats == "ellipsoids",
+             .hurried = look.quality != "fine",
+             .view = view};
+}
+
+Status FluidUpload::bringDrops(std::span<const vec4> drops, std::span<const vec4> pendants, FluidView& out) {
+    out.dropCount = static_cast<uint32_t>(drops.size() / 2);
+    if (out.dropCount > 0) {
+        if (Status s = makeRoom(drops_, drops.size_bytes()); !s) return s;
+        drops_.writeAll(drops);
+        out.drops = drops_.name();
+    }
+    out.pendantCount = static_cast<uint32_t>(pendants.size() / 5);
+    if (out.pendantCount > 0) {
+        if (Status s = makeRoom(pendants_, pendants.size_bytes()); !s) return s;
+        pendants_.writeAll(pendants);
+        out.pendants = pendants_.name();
+    }
+    return ok();
+}
+
 Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops,
                                     std::span<const vec4> pendants) {
     const double start = hostSeconds();
@@ -95,10 +125,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     GlShare offered = same ? GlShare{} : device.glShare();
     const bool normals = look.showsNormals() && particles.normal != nullptr;
     const bool loose = !drops.empty() || !pendants.empty();
-    if (!same && !loose && particles.revision && last_.revision == particles.revision && offered.by == sharing_ &&
-        last_.radiusSpacings == look.radiusSpacings && last_.normals == normals && last_.ellipsoids == (look.splats == "ellipsoids") &&
-        last_.hurried == (look.quality != "fine"))
-        return last_.view;
+    if (!same && !loose && offered.by == sharing_ && holds(particles.revision, look, normals)) return last_.view;
     last_ = {};
     if (offered.by != sharing_) follow(std::move(offered.by));
     facts_ = {.way = same ? kSameMemory : kRing, .why = std::move(offered.whyNot), .ms = 0, .bytes = 0, .waits = ring_.waits()};
@@ -113,18 +140,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.radius = look.radiusSpacings * particles.spacing;
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);
-    out.dropCount = static_cast<uint32_t>(drops.size() / 2);
-    if (out.dropCount > 0) {
-        if (Status s = makeRoom(drops_, drops.size_bytes()); !s) return s.error();
-        drops_.writeAll(drops);
-        out.drops = drops_.name();
-    }
-    out.pendantCount = static_cast<uint32_t>(pendants.size() / 5);
-    if (out.pendantCount > 0) {
-        if (Status s = makeRoom(pendants_, pendants.size_bytes()); !s) return s.error();
-        pendants_.writeAll(pendants);
-        out.pendants = pendants_.name();
-    }
+    if (Status s = bringDrops(drops, pendants, out); !s) return s.error();
     out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
     // The shader of the points reads normals in place of velocities. Before the first step there are no normals.
     std::vector<Array> arrays;
@@ -175,13 +191,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     }
     facts_.ms = 1000 * (hostSeconds() - start);
     facts_.waits = ring_.waits();
-    if (!same && !loose)
-        last_ = {.revision = particles.revision,
-                 .radiusSpacings = look.radiusSpacings,
-                 .normals = normals,
-                 .ellipsoids = look.splats == "ellipsoids",
-                 .hurried = look.quality != "fine",
-                 .view = out};
+    if (!same && !loose) hold(particles.revision, look, normals, out);
     return out;
 }
 
@@ -227,7 +237,6 @@ Status FluidUpload::share(std::span<const Array> arrays) {
 Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookParams& look) {
     last_ = {};  // the buffers hold another frame from now on
     const double start = hostSeconds();
-    last_ = {};
     facts_ = {.way = "recording", .why = {}, .ms = 0, .bytes = 0, .waits = ring_.waits()};
     FluidView out;
     out.count = static_cast<uint32_t>(frame.position.size());
@@ -256,6 +265,9 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
 
 Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParams& look) {
     if (s.empty()) return badInput("the snapshot is empty: take one of a world first");
+    const bool normals = look.showsNormals();
+    if (holds(s.revision_, look, normals)) return last_.view;
+    last_ = {};
     FluidView out;
     if (s.onGpu_) {
         facts_ = {.way = "copied on the GPU", .why = {}, .ms = 0, .bytes = 0, .waits = ring_.waits()};
@@ -264,7 +276,7 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out.radius = look.radiusSpacings * out.spacing;
         out.bounds = s.frame_.box;
         out.position = s.position_.name();
-        out.velocity = look.showsNormals() && s.normal_.used ? s.normal_.name() : s.velocity_.name();
+        out.velocity = normals && s.normal_.used ? s.normal_.name() : s.velocity_.name();
         out.id = s.id_.name();
         out.absorption = s.absorption_.name();
         for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) out.ellipsoids[k] = s.ellipsoids_[k].name();
@@ -276,16 +288,22 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out = *uploaded;
     }
     out.viscosity = s.viscosity_;
-    if (!s.wetSurface_) return out;
+    if (Status brought = bringDrops(s.drops_, s.pendants_, out); !brought) return brought.error();
+    if (!s.wetSurface_) {
+        hold(s.revision_, look, normals, out);
+        return out;
+    }
     if (Status held = holdWetCells(s.wetSurface_); !held) return held.error();
     out.wetCells = wetCells_.name();
     out.wetCellBytes = s.wetSurface_->cells.size() * sizeof(int32_t);
     out.wetnessBytes = s.wetSurface_->points.size() * sizeof(float);
     out.wetness = s.wet_.name();
-    if (s.onGpu_) return out;
-    if (Status room = wetness_.makeRoom(out.wetnessBytes); !room) return room.error();
-    wetness_.memory.writeAll(std::span<const float>(s.wetness_));
-    out.wetness = wetness_.memory.name();
+    if (!s.onGpu_) {
+        if (Status room = wetness_.makeRoom(out.wetnessBytes); !room) return room.error();
+        wetness_.memory.writeAll(std::span<const float>(s.wetness_));
+        out.wetness = wetness_.memory.name();
+    }
+    hold(s.revision_, look, normals, out);
     return out;
 }
 

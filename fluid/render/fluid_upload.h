@@ -68,6 +68,9 @@ class FluidUpload {
     Status room(std::span<const Array> arrays, size_t others, bool ring) const;
     void follow(std::shared_ptr<const GlSharing> sharing);
     void dropTargets();
+    bool holds(const std::shared_ptr<const void>& revision, const FluidLookParams& look, bool normals) const;
+    void hold(std::shared_ptr<const void> revision, const FluidLookParams& look, bool normals, const FluidView& view);
+    Status bringDrops(std::span<const vec4> drops, std::span<const vec4> pendants, FluidView& out);
     Status holdWetCells(std::shared_ptr<const WetSurface> surface);
     Status share(std::span<const Array> arrays);
     bool holdsSleepers(std::span<const Array> arrays, bool hurried, const FluidView& of) const;
@@ -92,7 +95,7 @@ class FluidUpload {
         bool hurried = false;
         uint32_t half = 0;
     } held_;
-    // The last view of a world: while its particles do not change, another view, of another eye say, needs no copy.
+    // The last view of a world or a snapshot: while its particles do not change, another view, of another eye say, needs no copy.
     struct Last {
         std::shared_ptr<const void> revision;
         float radiusSpacings = 0;

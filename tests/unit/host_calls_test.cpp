@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
+#include <type_traits>
 
 #include "engine/app/context_egl.h"
 #include "engine/app/gl_count.h"
@@ -46,7 +47,9 @@ class CallsOfAHost : public ::testing::Test {
         rivulet_context_destroy(context_);
     }
     void step(rivulet_world* world) { EXPECT_EQ(rivulet_world_step(world, nullptr, 1.0 / 60, &why_), RIVULET_OK) << why_.message; }
-    void draw(rivulet_world* world, const HostScene& host, float aside = 0) {
+    // Of a world or a snapshot.
+    template <class Drawn>
+    void draw(Drawn* drawn, const HostScene& host, float aside = 0) {
         FrameView v = host.view();
         v.view[3].x += aside;
         rivulet_view view{};
@@ -61,7 +64,10 @@ class CallsOfAHost : public ::testing::Test {
         target.framebuffer = t.framebuffer;
         target.width = t.width;
         target.height = t.height;
-        EXPECT_EQ(rivulet_world_draw(world, &view, &target, &why_), RIVULET_OK) << why_.message;
+        if constexpr (std::is_same_v<Drawn, rivulet_world>)
+            EXPECT_EQ(rivulet_world_draw(drawn, &view, &target, &why_), RIVULET_OK) << why_.message;
+        else
+            EXPECT_EQ(rivulet_snapshot_draw(drawn, &view, &target, &why_), RIVULET_OK) << why_.message;
     }
 
     std::optional<ContextEgl> gl_;
@@ -130,6 +136,23 @@ TEST_F(CallsOfAHost, ASecondEyeBringsNothingOver) {
     EXPECT_GT(copies(glCallsOf([&] { draw(worlds_[1], right); })), 0U);
     step(worlds_[0]);
     EXPECT_GT(copies(glCallsOf([&] { draw(worlds_[0], right); })), 0U);
+}
+
+TEST_F(CallsOfAHost, ASecondEyeOfASnapshotBringsNothingOver) {
+    const HostScene left(160, 120), right(160, 120), eye(160, 120), plain(160, 120);
+    rivulet_snapshot* snapshot = nullptr;
+    ASSERT_EQ(rivulet_snapshot_create(context_, &snapshot, &why_), RIVULET_OK) << why_.message;
+    const auto copies = [](const GlCalls& calls) { return calls.of("glCopyNamedBufferSubData") + calls.of("glFenceSync"); };
+    for (int frame = 0; frame < 3; ++frame) {
+        step(worlds_[0]);
+        ASSERT_EQ(rivulet_world_snapshot(worlds_[0], snapshot, &why_), RIVULET_OK) << why_.message;
+        EXPECT_GT(copies(glCallsOf([&] { draw(snapshot, left); })), 0U);
+        EXPECT_EQ(copies(glCallsOf([&] { draw(snapshot, right, 0.03F); })), 0U);
+    }
+    draw(snapshot, eye, 0.03F);
+    draw(worlds_[0], plain, 0.03F);
+    EXPECT_TRUE(eye.pixels() == plain.pixels());
+    rivulet_snapshot_destroy(snapshot);
 }
 
 // A host that knows its state is asked for nothing but the depth convention and what the target is, and finds defaults.

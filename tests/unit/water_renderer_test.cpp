@@ -8,6 +8,8 @@
 #include <functional>
 
 #include "engine/app/capture.h"
+#include "fluid/render/fluid_snapshot.h"
+#include "fluid/render/fluid_upload.h"
 #include "fluid/render/renderers.h"
 #include "tests/unit/host_fixture.h"
 #include "tests/unit/host_water.h"
@@ -42,6 +44,27 @@ bool mayBeWater(const FrameView& v, int x, int y) {
     }
     return static_cast<float>(x) > low.x - 2 && static_cast<float>(x) < high.x + 2 && static_cast<float>(y) > low.y - 2 &&
            static_cast<float>(y) < high.y + 2;
+}
+
+// What drips beside the world is in its snapshot as it was, and gone after the next.
+TEST_F(WaterInAHostsPicture, ASnapshotHasTheDropsOfSkins) {
+    const std::vector<vec4> drops = {vec4(0.5F, 0.7F, 0.5F, 0.02F), vec4(0, -1, 0, 0)}, pendants(5, vec4(0.25F));
+    FluidSnapshot snapshot;
+    FluidUpload upload;
+    ASSERT_TRUE(snapshot.take(*world_, drops, pendants));
+    const Result<FluidView> view = upload.view(snapshot, {});
+    ASSERT_TRUE(view) << view.error().message;
+    EXPECT_EQ(view->dropCount, 1U);
+    EXPECT_EQ(view->pendantCount, 1U);
+    std::vector<vec4> there(2), hanging(5);
+    glGetNamedBufferSubData(view->drops, 0, sizeof(vec4) * 2, there.data());
+    glGetNamedBufferSubData(view->pendants, 0, sizeof(vec4) * 5, hanging.data());
+    EXPECT_EQ(there, drops);
+    EXPECT_EQ(hanging, pendants);
+    ASSERT_TRUE(snapshot.take(*world_));
+    const Result<FluidView> after = upload.view(snapshot, {});
+    ASSERT_TRUE(after);
+    EXPECT_EQ(after->dropCount + after->pendantCount, 0U);
 }
 
 TEST_F(WaterInAHostsPicture, ChangesOnlyWhereThereIsWater) {

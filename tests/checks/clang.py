@@ -2,8 +2,8 @@
 """Reads every C++ file of the project a second time, with clang: `clang.py tidy BUILD` runs clang-tidy with .clang-tidy, which tells
 of the compiler's own warnings too; `clang.py syntax BUILD` compiles the others, the tests, with -Werror and writes nothing. A file that
 passed is not read again until its command, one of the files it includes, or .clang-tidy changes (stamps in BUILD/clang_stamps).
-With RIVULET_LINT=part it reads the files that changed in the last 25 commits, the files that include a changed header, and a sixth of all others.
-Which sixth depends on the number of commits. Without git's history it reads all files. Exit 77: clang is not installed."""
+With RIVULET_LINT=part it reads the files that changed in the last 25 commits, or whose header did, and a twelfth of all others.
+Which twelfth depends on the number of commits. Without git's history it reads all files. Exit 77: clang is not installed."""
 import hashlib, json, os, shlex, shutil, subprocess, sys
 from concurrent.futures import ThreadPoolExecutor
 
@@ -92,9 +92,9 @@ def part_of(entries):
     changed = {os.path.splitext(path)[0] for path in git("diff", "--name-only", "HEAD~25", "HEAD")}
     if not commits or not changed:
         return entries
-    sixth = lambda path: (int(hashlib.sha256(path.encode()).hexdigest(), 16) + int(commits[0])) % 6 == 0
+    twelfth = lambda path: (int(hashlib.sha256(path.encode()).hexdigest(), 16) + int(commits[0])) % 12 == 0
     name = lambda entry: os.path.relpath(entry["file"], root)
-    return [e for e in entries if os.path.splitext(name(e))[0] in changed or sixth(name(e))]
+    return [e for e in entries if os.path.splitext(name(e))[0] in changed or twelfth(name(e))]
 
 
 if os.environ.get("RIVULET_LINT") == "part":

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Other compilers: for each, the library and rivulet.h without optimisation and with warnings as errors; every public header alone as C++20 and
-# as C++23; then a host in C steps water on the cpu. clang 15 and 16 in a chroot of Debian 12, the others in one of Debian 13.
+# Other compilers: for each, the library with the generic instruction set and rivulet.h, with warnings as errors; every public header alone as
+# C++20 and as C++23; then a host in C steps water on the cpu. clang 15 and 16 in a chroot of Debian 12, the others in one of Debian 13.
 #   bash tests/platforms/compilers.sh [COMPILER...]      default: all below; libc++ is clang 19 with LLVM's standard library
 set -u
 [ $# -gt 0 ] || set -- clang-15 clang-16 g++-12 g++-13 g++-14 clang-17 clang-18 clang-19 libc++
@@ -21,7 +21,7 @@ for compiler in "$@"; do
     esac
     packages "${libraries[@]}" "${wanted[@]}"
     build="/build-$compiler"
-    printf 'set(CMAKE_C_COMPILER %s)\nset(CMAKE_CXX_COMPILER %s)\n' "$cc" "${cxx%% *}" >"$system/$compiler.cmake"
+    printf 'set(CMAKE_SYSTEM_NAME Linux)\nset(CMAKE_SYSTEM_PROCESSOR any)\nset(CMAKE_C_COMPILER %s)\nset(CMAKE_CXX_COMPILER %s)\n' "$cc" "${cxx%% *}" >"$system/$compiler.cmake"
     [ "$compiler" != libc++ ] || echo 'set(CMAKE_CXX_FLAGS_INIT -stdlib=libc++)' >>"$system/$compiler.cmake"
     if [ "$compiler" = libc++ ]; then  # C++ libraries are of one standard library
         source_of "$compiler" fmtlib . -DFMT_TEST=OFF -DFMT_DOC=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON
@@ -30,7 +30,7 @@ for compiler in "$@"; do
         options+=(-DCMAKE_PREFIX_PATH="/$compiler")
     fi
     say "$compiler: $(inside "${cxx%% *}" --version | head -n 1)"
-    inside cmake -S /src -B "$build" -G Ninja -DCMAKE_TOOLCHAIN_FILE="/$compiler.cmake" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_{C,CXX}_COMPILER_LAUNCHER=ccache \
+    inside cmake -S /src -B "$build" -G Ninja -DCMAKE_TOOLCHAIN_FILE="/$compiler.cmake" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= -DCMAKE_{C,CXX}_COMPILER_LAUNCHER=ccache \
         -DCMAKE_INSTALL_PREFIX="/prefix-$compiler" -DRIVULET_PROGRAM=OFF -DRIVULET_TESTS=OFF -DRIVULET_WERROR=ON "${options[@]}" \
         >"$system/$compiler.log" 2>&1 && inside cmake --build "$build" >>"$system/$compiler.log" 2>&1 &&
         inside cmake --install "$build" >>"$system/$compiler.log" 2>&1 || fail "$compiler: the build failed; its log is $system/$compiler.log."

@@ -28,8 +28,8 @@ typedef struct rivulet_snapshot rivulet_snapshot;
 /* An empty snapshot, for worlds of this context. It counts as one of them: destroy it before the context. */
 RIVULET_API rivulet_status rivulet_snapshot_create(rivulet_context* context, rivulet_snapshot** snapshot, rivulet_error* why);
 RIVULET_API void rivulet_snapshot_destroy(rivulet_snapshot* snapshot);
-/* Copies the particles, foam, ellipsoids, wetness and drops of skins of the world as they are now, and its look, in place of what the snapshot held. With
-   backend cpu and cl no OpenGL is used. The world may be destroyed before the snapshot. */
+/* Copies the particles, foam, ellipsoids, wetness and drops of skins of the world as they are now, and its look, in place of what the
+   snapshot held. With backend cpu and cl no OpenGL is used. The world may be destroyed before the snapshot. */
 RIVULET_API rivulet_status rivulet_world_snapshot(rivulet_world* world, rivulet_snapshot* snapshot, rivulet_error* why);
 /* Records what is drawn of the world into a file: each rivulet_world_step from now on adds its frame, which waits for a GPU. path NULL:
    ends the recording; so does the world's destruction. Until then an older file of the name stays as it is. RIVULET_FAILED, also of a step:

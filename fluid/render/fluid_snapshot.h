@@ -35,7 +35,7 @@ class FluidSnapshot {
 
     bool taken_ = false, onGpu_ = false;
     std::shared_ptr<const void> revision_;  // a new one with each take
-    RecordedFrame frame_;  // of cpu and cl: all; of gl: time, spacing, box
+    RecordedFrame frame_;                   // of cpu and cl: all; of gl: time, spacing, box
     float viscosity_ = 0;
     std::shared_ptr<const WetSurface> wetSurface_;
     std::vector<float> wetness_;  // of cpu and cl

@@ -38,7 +38,7 @@ void FluidWorld::Impl::gatherColours() {
     if (!coloured) return;
     StepParams all{};
     all.count = particles.count;
-    device->run(gatherAbsorption, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
+    device->run(gatherVectors, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
 }
 
 void FluidWorld::Impl::report(const std::string& sentence) {

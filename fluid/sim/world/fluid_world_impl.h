@@ -83,7 +83,7 @@ struct FluidWorld::Impl {
     ProbeTargets probeTargets;
     std::optional<ProbePasses> probes;  // empty: the scene has none
     Buffer statsRows, corner;
-    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
+    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherVectors;
     PairTraits traits;
     WorldForces forces;
     StepLimits limits;

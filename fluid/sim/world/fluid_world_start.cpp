@@ -57,7 +57,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
                             Wanted{&wrap, "fluid/world/wrap", {}, glm::any(traits.periodic)},
                             Wanted{&wrapFromPositions, "fluid/world/wrap", {fromPositions}, glm::any(traits.periodic)},
                             Wanted{&gatherMatter, "fluid/world/gather_matter", {}, traits.matter},
-                            Wanted{&gatherAbsorption, "fluid/world/gather_absorption", {}, coloured}}) {
+                            Wanted{&gatherVectors, "fluid/world/gather_vectors", {}, coloured}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();

@@ -145,17 +145,24 @@ RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivul
    the device. */
 typedef struct rivulet_particles {
     size_t size;
+enum { RIVULET_ATTRIBUTES = 4 }; /* at most, of a world */
     size_t capacity;   /* of each array */
     float* positions;  /* m, 3 each */
     float* velocities; /* m/s, 3 each */
     float* densities;  /* over the rest density */
     uint32_t* ids;
-    size_t count; /* out: the number of all particles, also where capacity is smaller */
+    size_t count;                          /* out: the number of all particles, also where capacity is smaller */
+    float* attributes[RIVULET_ATTRIBUTES]; /* 4 each: the values of fluid.attributes */
 } rivulet_particles;
 RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why);
 
 /* The states of the bodies now, in their order; `count` must be their number. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
+/* Sets fluid.attributes[attribute] of the particles with these ids: `values` are 4 floats each, finite. The water does not depend on it; a
+   reset gives them their values of t = 0 again. Does not wait. rivulet_world_paint, in rivulet_query.h, does it in a volume. */
+RIVULET_API rivulet_status rivulet_world_set_attribute(rivulet_world* world, uint32_t attribute, const uint32_t* ids, const float* values,
+                                                       size_t count, rivulet_error* why);
+
 
 /* Saves and restores all that the next step depends on; on the cpu the restored run is bit-identical. */
 RIVULET_API rivulet_status rivulet_world_save(rivulet_world* world, const char* path, rivulet_error* why);

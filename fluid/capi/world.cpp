@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "engine/core/json.h"
@@ -377,6 +378,8 @@ rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* 
         }
         rivulet_particles full = to;
         full.count = all.position.size();
+            for (size_t k = 0; k < all.attributes.size(); ++k)
+                if (to.attributes[k] != nullptr) std::memcpy(to.attributes[k] + 4 * n, &all.attributes[k][n].x, 4 * sizeof(float));
         return writeStruct(full, particles, "rivulet_particles", "particles");
     });
 }

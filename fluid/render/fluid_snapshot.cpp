@@ -74,5 +74,7 @@ Status FluidSnapshot::takeOnGpu(const FluidWorld& world) {
         if (Status done = copy(*to, from, bytes); !done) return done;
     return ok();
 }
+    for (size_t k = 0; k < kMostAttributes; ++k)
+        if (Status done = copy(attributes_[k], particles.attributes[k], vectors); !done) return done;
 
 }  // namespace rivulet

@@ -50,6 +50,7 @@ class FluidSnapshot {
     Copy position_, velocity_, normal_, id_, absorption_, wet_;
     std::array<Copy, 3> ellipsoids_;
     std::array<Copy, 2> foam_;
+    std::array<Copy, kMostAttributes> attributes_;
 };
 
 }  // namespace rivulet

@@ -54,18 +54,22 @@ Status FluidUpload::Target::makeRoom(size_t bytes) {
     return rivulet::makeRoom(memory, bytes);
 }
 
+template <class Self>
+auto FluidUpload::targets(Self& of) {
+    std::vector all = {&of.position_,      &of.velocity_,      &of.id_,           &of.absorption_, &of.foam_[0], &of.foam_[1], &of.wetness_,
+                       &of.ellipsoids_[0], &of.ellipsoids_[1], &of.ellipsoids_[2]};
+    for (auto& attribute : of.attributes_) all.push_back(&attribute);
+    return all;
+}
+
 void FluidUpload::dropTargets() {
-    for (Target* to :
-         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &wetness_, &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
-        to->drop();
+    for (Target* to : targets(*this)) to->drop();
     held_ = {};
 }
 
 size_t FluidUpload::bytes() const {
     size_t sum = ring_.bytes() + drops_.bytes() + pendants_.bytes() + wetCells_.bytes();
-    for (const Target* to :
-         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &wetness_, &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
-        sum += to->memory.bytes();
+    for (const Target* to : targets(*this)) sum += to->memory.bytes();
     return sum;
 }
 
@@ -172,6 +176,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         wanted(normals ? particles.normal : particles.velocity, velocity_, out.velocity, true);
         wanted(particles.absorption, absorption_, out.absorption, true);
         for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k)
+        for (size_t k = 0; k < kMostAttributes; ++k) wanted(particles.attributes[k], attributes_[k], out.attributes[k], true);
             wanted(particles.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
         if (same) out.id = static_cast<unsigned>(particles.id->handle());
     }
@@ -255,6 +260,7 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
     wanted(normals ? frame.normal : frame.velocity, velocity_, out.velocity, true);
     wanted(frame.absorption, absorption_, out.absorption, true);
     for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) wanted(frame.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
+    for (size_t k = 0; k < kMostAttributes; ++k) wanted(frame.attributes[k], attributes_[k], out.attributes[k], true);
     ids_ = frame.id;
     if (!arrays.empty())
         if (Status s = bringOver(nullptr, arrays, frame.halves && look.quality != "fine", out); !s) return s.error();
@@ -280,6 +286,7 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out.id = s.id_.name();
         out.absorption = s.absorption_.name();
         for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) out.ellipsoids[k] = s.ellipsoids_[k].name();
+        for (size_t k = 0; k < kMostAttributes; ++k) out.attributes[k] = s.attributes_[k].name();
         out.foam = {s.foam_[0].name(), s.foam_[1].name()};
         out.foamCount = s.foamCount_;
     } else {

@@ -24,6 +24,8 @@ struct FluidView {
     // GL buffer names, vec4 each, of the ellipsoids around the particles (shaders/fluid/surface/ellipsoids.kernel): centre, spread, slant.
     // 0: particles are drawn as spheres.
     std::array<unsigned, 3> ellipsoids = {};
+    // GL buffer names, vec4 each: the values of FluidParams::attributes, in its order; 0 beyond them. For shaders of a host.
+    std::array<unsigned, kMostAttributes> attributes = {};
     uint32_t count = 0;  // particles; 0: nothing is drawn, and the names may be 0. Particles with NaN are not drawn
     uint32_t half = 0;   // the first `half` particles (of those awake) are every second one, the same in each frame; 0: no such order
     // Particles that sleep come last, and are the same while `sleepers` is the same object: what is drawn of them may be kept. Of the

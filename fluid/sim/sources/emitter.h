@@ -16,19 +16,20 @@ namespace rivulet {
 struct EmitterParams {
     std::string shape = "nozzle";  // nozzle | box | mesh
     float litresPerSecond = 1.0F;
-    float speed = 0.0F;                 // m/s; of a nozzle 0 = what the rate needs through its opening
-    vec3 position{0.0F, 1.0F, 0.0F};    // m, the opening's centre, or the box's; mesh: where its origin goes
-    vec3 direction{0.0F, -1.0F, 0.0F};  // nozzle, box; any length but 0
-    float radius = 0.05F;               // m, nozzle
-    vec3 size{0.2F};                    // m, box
-    std::string mesh = {};              // file, as of a collider
-    float fitSize = 0.0F;               // m, mesh: its longest side; 0 = as it is
-    vec3 rotation{0.0F};                // deg, mesh
-    float start = 0.0F, stop = 0.0F;    // s; stop 0 = never
-    std::string liquid = {};            // a row of liquids(); "" = the world's
-    vec3 dye{1.0F};                     // linear; white = none
-    float dyeAmount = 20.0F;            // 1/m
-    float dyeScattering = 0.0F;         // 1/m
+    float speed = 0.0F;                                // m/s; of a nozzle 0 = what the rate needs through its opening
+    vec3 position{0.0F, 1.0F, 0.0F};                   // m, the opening's centre, or the box's; mesh: where its origin goes
+    vec3 direction{0.0F, -1.0F, 0.0F};                 // nozzle, box; any length but 0
+    float radius = 0.05F;                              // m, nozzle
+    vec3 size{0.2F};                                   // m, box
+    std::string mesh = {};                             // file, as of a collider
+    float fitSize = 0.0F;                              // m, mesh: its longest side; 0 = as it is
+    vec3 rotation{0.0F};                               // deg, mesh
+    float start = 0.0F, stop = 0.0F;                   // s; stop 0 = never
+    std::string liquid = {};                           // a row of liquids(); "" = the world's
+    vec3 dye{1.0F};                                    // linear; white = none
+    float dyeAmount = 20.0F;                           // 1/m
+    float dyeScattering = 0.0F;                        // 1/m
+    std::vector<LiveAttributeParams> attributes = {};  // of its particles, as of BlockParams
     void visit(ParamVisitor& v);
 };
 

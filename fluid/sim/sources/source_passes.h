@@ -76,6 +76,7 @@ class SourcePasses {
     void readCounts();
     void writeSinks(const std::vector<SinkParams>& sinks);
     void dropUnfit(const World& world);
+    void writeAttributes();
     uint64_t meshesHash() const;
 
     Device* device_ = nullptr;
@@ -85,7 +86,9 @@ class SourcePasses {
     bool deposits_ = false;
     std::vector<uint32_t> reported_;  // per emitter: refusals that its feed has counted; wraps around with the counters
     size_t sinkCount_ = 0;
-    Kernel emit_, drain_, forget_;
+    std::vector<AttributeParams> attributes_;  // of the world
+    std::vector<Buffer> emittedAttributes_;    // of each: the value of each feed's particles
+    Kernel emit_, emitAttribute_, drain_, forget_;
     Buffer candidates_, sinks_, counters_;
     std::vector<Candidate> list_;
     double waited_ = 0;  // s since emitters last ran

@@ -12,6 +12,7 @@
 #include "engine/core/param_check.h"
 #include "engine/core/param_fixed.h"
 #include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/attributes.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 
 namespace rivulet {
@@ -34,11 +35,12 @@ const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodie
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
-void FluidWorld::Impl::gatherColours() {
-    if (!coloured) return;
+void FluidWorld::Impl::gatherForDrawing() {
     StepParams all{};
     all.count = particles.count;
-    device->run(gatherVectors, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
+    if (coloured) device->run(gatherVectors, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
+    for (size_t k = 0; k < particles.attributes.size(); ++k)
+        device->run(gatherVectors, all, {&particles.id, &particles.attributesOf[k], &particles.attributes[k]}, particles.count);
 }
 
 void FluidWorld::Impl::report(const std::string& sentence) {
@@ -244,6 +246,9 @@ ParticleView FluidWorld::particles() const {
             .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
             .viscosity = w.traits.matter ? std::max(w.params.viscosity, w.mostViscous) : w.params.viscosity,
             .drawn = &w.drawn.positions(w.particles),
+    if (sleepers && sleepers == w.painted.of) sleepers = w.painted.shown;
+    std::array<const Buffer*, kMostAttributes> attributes{};
+    for (size_t k = 0; k < w.particles.attributes.size(); ++k) attributes[k] = &w.particles.attributes[k];
             .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{},
             .asleep = sleepers ? w.particles.count - w.grid->awakeSlots() : 0,
             .sleepers = sleepers,
@@ -252,6 +257,7 @@ ParticleView FluidWorld::particles() const {
             .foamVelocity = w.foam ? &w.foam->velocity() : nullptr,
             .foamSlots = w.foam ? w.foam->slots() : 0,
             .revision = w.revision};
+            .attributes = attributes,
 }
 
 WetnessView FluidWorld::wetness() const {
@@ -281,6 +287,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.traits.linked = params.grid == "linked_list";
     if (w.traits.linked)
         if (Status can = w.mayLink(); !can) return can.error();
+    if (Status s = checkAttributes(params); !s) return s.error();
     Result<SolidPasses> passes = SolidPasses::create(device, solids, w.params, w.traits.threadDefines());
     if (!passes) return passes.error();
     w.solids = std::move(*passes);

@@ -106,6 +106,12 @@ class FluidWorld {
 
     // Exchange with other owners of water, such as skins; only if Sources::expectedDeposit is above 0. Places m, velocities m/s. deposit:
     // adds `volume` m^3 at the place. It is pending until it suffices for a particle, which is then spawned above the place. Volume is
+    // Sets fluid.attributes[attribute] of particles: of those with these ids (ParticleView::id), a value each; or of all that are in a
+    // volume now, whose id is not read. Neither waits. Error (badInput): no such attribute or id; a value or volume that is not finite;
+    // (failed): out of memory. Nothing has changed then.
+    Status setAttribute(size_t attribute, std::span<const uint32_t> ids, std::span<const vec4> values);
+    Status paint(size_t attribute, const Volume& inside, const vec4& value);
+
     // conserved; deposited water is of the world's own liquid.
     void deposit(const vec3& place, const vec3& velocity, double volume);
     // within: the particles now in a box that are faster (m/s) or of a lower density ratio than given, 16,384 at most. withdraw: removes

@@ -83,7 +83,12 @@ struct FluidWorld::Impl {
     ProbeTargets probeTargets;
     std::optional<ProbePasses> probes;  // empty: the scene has none
     Buffer statsRows, corner;
-    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherVectors;
+    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherVectors, setAttribute, paintAttribute;
+    Buffer attributeIds, attributeValues;  // of setAttribute
+    // Painted since the grid's sleepers were sorted: those that ParticleView shows in place of them.
+    struct {
+        std::shared_ptr<const void> of, shown;
+    } painted;
     PairTraits traits;
     WorldForces forces;
     StepLimits limits;
@@ -129,7 +134,9 @@ struct FluidWorld::Impl {
     Status findSlots();
     void findLiquids();
     void writeStart();
-    void gatherColours();
+    void writeAttributes();
+    void gatherForDrawing();
+    void attributesChanged();
     Bounds reachable() const;  // m
     StepLimits::Inputs limitInputs() const;
     float fastestFall() const { return limits.fastestFall(limitInputs()); }

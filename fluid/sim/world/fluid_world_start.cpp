@@ -57,7 +57,9 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
                             Wanted{&wrap, "fluid/world/wrap", {}, glm::any(traits.periodic)},
                             Wanted{&wrapFromPositions, "fluid/world/wrap", {fromPositions}, glm::any(traits.periodic)},
                             Wanted{&gatherMatter, "fluid/world/gather_matter", {}, traits.matter},
-                            Wanted{&gatherVectors, "fluid/world/gather_vectors", {}, coloured}}) {
+                            Wanted{&gatherVectors, "fluid/world/gather_vectors", {}, coloured || !params.attributes.empty()},
+                            Wanted{&setAttribute, "fluid/world/set_attribute", {}, !params.attributes.empty()},
+                            Wanted{&paintAttribute, "fluid/world/paint_attribute", {}, !params.attributes.empty()}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();
@@ -85,7 +87,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
         const vec4 value(params.box.min, 0.0F);
         device->write(corner, std::as_bytes(std::span(&value, 1)));
     }
-    Result<Particles> newParticles = Particles::create(*device, count, traits.matter, coloured);
+    Result<Particles> newParticles = Particles::create(*device, count, traits.matter, coloured, params.attributes.size());
     if (!newParticles) return newParticles.error();
     particles = std::move(*newParticles);
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
@@ -334,8 +336,9 @@ void FluidWorld::Impl::writeStart() {
     volumes.reset();
     if (probes) probes->reset();
     sorted = false;
+    writeAttributes();
     invalidateCells();
-    gatherColours();
+    gatherForDrawing();
     if (sleep) sleep->reset(0);
     stepped = 0;
     sleptUnder = vec3(0.0F);

@@ -254,7 +254,7 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     clock.lastSubsteps = substeps;
     clock.time += simulated;
     if (probes) probes->end(std::shared_ptr<ProbeFrame>(figures, &figures->loads), clock.time, simulated);
-    gatherColours();
+    gatherForDrawing();
     if (simulated > 0) volumes.count(step, particles, clock.time);
     if (shortage) {
         (void)stepper.end(simulated);

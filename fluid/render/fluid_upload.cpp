@@ -145,6 +145,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);
     if (Status s = bringDrops(drops, pendants, out); !s) return s.error();
+    out.dry = world.dry();
     out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
     // The shader of the points reads normals in place of velocities. Before the first step there are no normals.
     std::vector<Array> arrays;
@@ -175,8 +176,8 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         wanted(particles.drawn, position_, out.position, true);
         wanted(normals ? particles.normal : particles.velocity, velocity_, out.velocity, true);
         wanted(particles.absorption, absorption_, out.absorption, true);
-        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k)
         for (size_t k = 0; k < kMostAttributes; ++k) wanted(particles.attributes[k], attributes_[k], out.attributes[k], true);
+        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k)
             wanted(particles.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
         if (same) out.id = static_cast<unsigned>(particles.id->handle());
     }
@@ -259,8 +260,8 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
     wanted(frame.position, position_, out.position, true);
     wanted(normals ? frame.normal : frame.velocity, velocity_, out.velocity, true);
     wanted(frame.absorption, absorption_, out.absorption, true);
-    for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) wanted(frame.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
     for (size_t k = 0; k < kMostAttributes; ++k) wanted(frame.attributes[k], attributes_[k], out.attributes[k], true);
+    for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) wanted(frame.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
     ids_ = frame.id;
     if (!arrays.empty())
         if (Status s = bringOver(nullptr, arrays, frame.halves && look.quality != "fine", out); !s) return s.error();
@@ -285,8 +286,8 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out.velocity = normals && s.normal_.used ? s.normal_.name() : s.velocity_.name();
         out.id = s.id_.name();
         out.absorption = s.absorption_.name();
-        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) out.ellipsoids[k] = s.ellipsoids_[k].name();
         for (size_t k = 0; k < kMostAttributes; ++k) out.attributes[k] = s.attributes_[k].name();
+        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) out.ellipsoids[k] = s.ellipsoids_[k].name();
         out.foam = {s.foam_[0].name(), s.foam_[1].name()};
         out.foamCount = s.foamCount_;
     } else {
@@ -295,6 +296,7 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out = *uploaded;
     }
     out.viscosity = s.viscosity_;
+    out.dry = s.dry_;
     if (Status brought = bringDrops(s.drops_, s.pendants_, out); !brought) return brought.error();
     if (!s.wetSurface_) {
         hold(s.revision_, look, normals, out);

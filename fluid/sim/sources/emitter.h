@@ -9,6 +9,7 @@
 #include "engine/core/params.h"
 #include "engine/core/result.h"
 #include "fluid/sim/sources/block.h"
+#include "fluid/sim/sources/dry.h"
 #include "shaders/fluid/sources/emit_params.h"
 
 namespace rivulet {
@@ -52,7 +53,8 @@ struct Emitter {
 struct Sources {
     std::vector<Emitter> emitters = {};
     std::vector<SinkParams> sinks = {};
-    double seconds = 10;  // how long emitters are expected to run: fluid.maxParticles = 0 makes room for that
+    std::vector<DryParams> dry = {};  // volumes without water
+    double seconds = 10;              // how long emitters are expected to run: fluid.maxParticles = 0 makes room for that
     // m^3 that FluidWorld::deposit() is expected to bring in that time, beyond what withdraw() removes. 0: there is no such exchange.
     double expectedDeposit = 0;
     double more = 0;     // m^3 there is room for beyond all that

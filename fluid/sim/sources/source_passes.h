@@ -39,6 +39,7 @@ class SourcePasses {
         Particles& particles;  // sorted as the substep sorted them
         const SolidPasses& solids;
         const BodyPasses& bodies;
+        std::span<const DryVolume> dry;
         std::span<const NamedBuffer> remembered;  // of the method: its state per particle is removed with the particle
     };
     // After a substep of `dt` that ended at `time`; `last` of its frame.
@@ -75,8 +76,8 @@ class SourcePasses {
     };
     void readCounts();
     void writeSinks(const std::vector<SinkParams>& sinks);
-    void dropUnfit(const World& world);
     void writeAttributes();
+    void dropUnfit(const World& world);
     uint64_t meshesHash() const;
 
     Device* device_ = nullptr;

@@ -175,16 +175,28 @@ Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {
 Status FluidWorld::setSources(const Sources& next) {
     impl_->change();
     Impl& w = *impl_;
+    if (!next.dry.empty() && w.traits.linked)
+        return badInput("fluid.grid linked_list does not support dry volumes: choose fluid.grid sorted");
+    if (Status s = checkDry(next.dry, w.bodies.states().size()); !s) return s;
+    if (!next.dry.empty())
+        if (Status s = w.dry.prepare(*w.device); !s) return s;
     std::vector<EmitterParams> emitters;
     emitters.reserve(next.emitters.size());
     for (const Emitter& e : next.emitters) emitters.push_back(e.params);
     std::vector<SinkParams> sinks = next.sinks;
-    if (next.emitters.size() != w.sourceSetup.emitters.size() || sinks.size() != w.sourceSetup.sinks.size()) return w.replaceSources(next);
+    if (next.emitters.size() != w.sourceSetup.emitters.size() || sinks.size() != w.sourceSetup.sinks.size()) {
+        if (Status s = w.replaceSources(next); !s) return s;
+        w.setDry(next.dry);
+        return ok();
+    }
     if (Status s = w.sources.set(next); !s) return s;
     for (size_t k = 0; k < emitters.size(); ++k) w.sourceSetup.emitters[k].params = std::move(emitters[k]);
     w.sourceSetup.sinks = std::move(sinks);
+    w.setDry(next.dry);
     return ok();
 }
+
+const std::vector<DryVolume>& FluidWorld::dry() const { return impl_->dry.volumes(); }
 
 Status FluidWorld::Impl::prepareProbes(const FluidParams& next) {
     std::optional<ProbePasses> made;
@@ -234,6 +246,9 @@ ParticleView FluidWorld::particles() const {
     // What fell asleep within the last fixed step is still drawn on its way.
     std::shared_ptr<const void> sleepers = w.sleep ? w.grid->sleepers() : nullptr;
     if (w.params.fixedStep > 0 && sleepers != w.sleepersBefore) sleepers = nullptr;
+    if (sleepers && sleepers == w.painted.of) sleepers = w.painted.shown;
+    std::array<const Buffer*, kMostAttributes> attributes{};
+    for (size_t k = 0; k < w.particles.attributes.size(); ++k) attributes[k] = &w.particles.attributes[k];
     return {.position = &w.particles.positionNext,
             .velocity = &w.particles.velocityNext,
             .id = &w.particles.id,
@@ -242,13 +257,11 @@ ParticleView FluidWorld::particles() const {
             .slots = w.particles.count,
             .absorption = w.coloured ? &w.particles.absorption : nullptr,
             .matterOf = w.traits.matter ? &w.particles.matterOf : nullptr,
+            .attributes = attributes,
             .spacing = w.params.spacing,
             .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
             .viscosity = w.traits.matter ? std::max(w.params.viscosity, w.mostViscous) : w.params.viscosity,
             .drawn = &w.drawn.positions(w.particles),
-    if (sleepers && sleepers == w.painted.of) sleepers = w.painted.shown;
-    std::array<const Buffer*, kMostAttributes> attributes{};
-    for (size_t k = 0; k < w.particles.attributes.size(); ++k) attributes[k] = &w.particles.attributes[k];
             .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{},
             .asleep = sleepers ? w.particles.count - w.grid->awakeSlots() : 0,
             .sleepers = sleepers,
@@ -257,7 +270,6 @@ ParticleView FluidWorld::particles() const {
             .foamVelocity = w.foam ? &w.foam->velocity() : nullptr,
             .foamSlots = w.foam ? w.foam->slots() : 0,
             .revision = w.revision};
-            .attributes = attributes,
 }
 
 WetnessView FluidWorld::wetness() const {
@@ -275,6 +287,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
                                     box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
+    if (Status s = checkAttributes(params); !s) return s.error();
     w.device = &device;
     w.params = params;
     w.sourceSetup = std::move(sources);
@@ -287,7 +300,6 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.traits.linked = params.grid == "linked_list";
     if (w.traits.linked)
         if (Status can = w.mayLink(); !can) return can.error();
-    if (Status s = checkAttributes(params); !s) return s.error();
     Result<SolidPasses> passes = SolidPasses::create(device, solids, w.params, w.traits.threadDefines());
     if (!passes) return passes.error();
     w.solids = std::move(*passes);

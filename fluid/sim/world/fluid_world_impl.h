@@ -18,6 +18,7 @@
 #include "fluid/sim/solids/solid_passes.h"
 #include "fluid/sim/solids/wet_passes.h"
 #include "fluid/sim/sources/block.h"
+#include "fluid/sim/sources/dry_passes.h"
 #include "fluid/sim/sources/exchange_passes.h"
 #include "fluid/sim/sources/source_passes.h"
 #include "fluid/sim/surface/ellipsoids.h"
@@ -61,6 +62,7 @@ struct FluidWorld::Impl {
     SolidPasses solids;
     Sources sourceSetup;  // emitters and sinks
     SourcePasses sources;
+    DryPasses dry;
     ExchangePasses exchange;  // for other owners of water
     uint64_t withdrawn = 0;   // particles removed by them
     // Particles that emitters and sinks spawned and removed before setSources() replaced them.
@@ -116,6 +118,7 @@ struct FluidWorld::Impl {
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
     Status replaceSources(const Sources& next);
+    void setDry(const std::vector<DryParams>& volumes);  // sound ones
     Status removeInside();   // particles inside a wall
     Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;

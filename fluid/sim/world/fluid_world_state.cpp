@@ -27,6 +27,7 @@ void FluidWorld::save(WorldState& state) {
     Impl& w = *impl_;
     ASSERT(savable(), "a world whose bodies cannot be saved");
     w.sources.report();
+    w.dry.report();
     w.device->finish();
     w.device->poll();
     state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
@@ -50,7 +51,7 @@ void FluidWorld::save(WorldState& state) {
     if (w.foam) w.foam->save(state);
     if (w.wet) w.wet->save(state);
     if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.withdrawn, 1));
-    if (const uint64_t before[] = {w.before.emitted, w.before.drained}; before[0] + before[1] > 0)
+    if (const uint64_t before[] = {w.before.emitted, w.before.drained + w.dry.removed()}; before[0] + before[1] > 0)
         state.put<uint64_t>("world.sourcesBefore", before);
     w.volumes.save(state);
     w.bodies.save(state);

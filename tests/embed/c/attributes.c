@@ -1,4 +1,4 @@
-/* Attributes of particles from C. With OpenGL a shader of the host's own draws points coloured by an attribute; a path as
+/* Attributes of particles and dry volumes from C. With OpenGL a shader of the host's own draws points coloured by an attribute; a path as
    argument: that picture as a .ppm. Exit 77: no OpenGL. */
 #include <math.h>
 #include <stdlib.h>
@@ -71,6 +71,22 @@ static void what_cannot_be_is_refused(rivulet_world* world) {
     REFUSED(rivulet_world_paint(world, 0, &flat, red, &why), "volume.shape is 2");
     REFUSED(rivulet_world_paint(world, 0, &box, NULL, &why), "NULL");
     REFUSED(rivulet_world_set(world, "fluid.attributes.0.x=1", &why), "fixed");
+    REFUSED(rivulet_world_set_sources(world, "{\"dry\": [{\"size\": [1, 0, 1]}]}", &why), "give three lengths above 0");
+    REFUSED(rivulet_world_set_sources(world, "{\"dry\": [{\"size\": [1, 1, 1], \"body\": 0}]}", &why), "there are 0 bodies");
+}
+
+/* Nothing is where it is dry, and what was there is gone. */
+static void a_volume_stays_dry(rivulet_world* world) {
+    const size_t before = read_all(world);
+    DONE(rivulet_world_set_sources(world, "{\"dry\": [{\"position\": [0.5, 0, 0.125], \"size\": [0.2, 0.4, 0.3]}]}", &why));
+    for (int frame = 0; frame < 10; ++frame) {
+        DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+        const size_t count = read_all(world);
+        CHECK(count < before && count > before / 2);
+        for (size_t k = 0; k < count; ++k)
+            CHECK(!(positions[3 * k] > 0.401F && positions[3 * k] < 0.599F && positions[3 * k + 1] < 0.199F));
+        DONE(rivulet_world_set(world, "dry.0.position=[0.5, 0, 0.12]", &why));
+    }
 }
 
 /* Row i of all buffers is the same particle; a shader of the host's colours each point by its dye. */
@@ -151,6 +167,7 @@ int main(int count, char** arguments) {
         values_stay(world);
         if (drawing) a_shader_reads_them(world, count > 1 ? arguments[1] : NULL);
         what_cannot_be_is_refused(world);
+        a_volume_stays_dry(world);
         rivulet_world_destroy(world);
         rivulet_context_destroy(context);
     }

@@ -1,6 +1,9 @@
 // rivulet.h: volumes, and attributes of particles.
 #include <fmt/format.h>
 
+#include <span>
+#include <vector>
+
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 

@@ -1,5 +1,7 @@
 // The water's surface is cut where a volume stays dry.
+#include <algorithm>
 #include <span>
+#include <vector>
 
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"

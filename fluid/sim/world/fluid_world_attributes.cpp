@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 
 #include "fluid/sim/world/attributes.h"
 #include "fluid/sim/world/fluid_world_impl.h"

@@ -119,8 +119,8 @@ struct FluidWorld::Impl {
     Status prepareProbes(const FluidParams& next);
     Status replaceSources(const Sources& next);
     void setDry(const std::vector<DryParams>& volumes);  // sound ones
-    Status removeInside();   // particles inside a wall
-    Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
+    Status removeInside();                               // particles inside a wall
+    Status mayLink() const;                              // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     Status checkStart() const;
     void fillStart();

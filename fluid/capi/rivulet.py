@@ -131,8 +131,8 @@ Box = namedtuple("Box", ["id", "position", "size"])
 Box.__doc__ = "A volume that counts particles: id, chosen by the caller; position (m) of its centre; size (m)."
 Sphere = namedtuple("Sphere", ["id", "position", "radius"])
 Sphere.__doc__ = "A volume that counts particles: id, chosen by the caller; position (m) of its centre; radius (m)."
-Particles = namedtuple("Particles", ["positions", "velocities", "densities", "ids", "attributes"])
-Particles.__doc__ = "positions (n, 3) m, velocities (n, 3) m/s, densities (n,) over rest density: float32; ids (n,): uint32; attributes: by name, the values of fluid.attributes, (n, 4) float32. Their order changes from step to step; ids do not."
+Particles = namedtuple("Particles", ["positions", "velocities", "densities", "ids"])
+Particles.__doc__ = "positions (n, 3) m, velocities (n, 3) m/s, densities (n,) over rest density: float32; ids (n,): uint32. Their order changes from step to step; ids do not."
 
 
 def _load():
@@ -424,10 +424,18 @@ class World(_Handle):
         asked = _struct(_Particles)
         _call("world_particles", self._pointer, asked)
         n = asked.count
-        arrays = Particles(np.empty((n, 3), np.float32), np.empty((n, 3), np.float32), np.empty(n, np.float32), np.empty(n, np.uint32),
-                           {name: np.empty((n, 4), np.float32) for name in self._attributes})
-        asked = _struct(_Particles, capacity=n, **{name: _at(array) for name, array in zip(Particles._fields[:4], arrays)})
-        for k, values in enumerate(arrays.attributes.values()):
+        arrays = Particles(np.empty((n, 3), np.float32), np.empty((n, 3), np.float32), np.empty(n, np.float32), np.empty(n, np.uint32))
+        asked = _struct(_Particles, capacity=n, **{name: _at(array) for name, array in zip(Particles._fields, arrays)})
+        _call("world_particles", self._pointer, asked)
+        return arrays
+
+    def attributes(self):
+        """The values of fluid.attributes now, by name, (n, 4) each: in the order of particles(), until the next step."""
+        asked = _struct(_Particles)
+        _call("world_particles", self._pointer, asked)
+        arrays = {name: np.empty((asked.count, 4), np.float32) for name in self._attributes}
+        asked = _struct(_Particles, capacity=asked.count)
+        for k, values in enumerate(arrays.values()):
             asked.attributes[k] = _at(values)
         _call("world_particles", self._pointer, asked)
         return arrays

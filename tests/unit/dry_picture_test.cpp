@@ -3,14 +3,10 @@
 #include <rivulet_glad/gl.h>
 
 #include <cmath>
-#include <optional>
 
-#include "engine/app/context_egl.h"
-#include "engine/gpu/device_gl.h"
 #include "fluid/render/fluid_snapshot.h"
 #include "fluid/render/fluid_upload.h"
-#include "fluid/render/water_renderer.h"
-#include "tests/unit/host_fixture.h"
+#include "tests/unit/host_water.h"
 
 namespace rivulet::dry_picture_test {
 namespace {
@@ -28,22 +24,9 @@ struct Changed {
     size_t within = 0, seen = 0, elsewhere = 0;  // pixels of the well that show water, of all of them; other pixels that do
 };
 
-class DryPicture : public ::testing::Test {
+class DryPicture : public testing::HostWater {
   protected:
-    void SetUp() override {
-        Result<ContextEgl> context = ContextEgl::create();
-        if (!context) GTEST_SKIP() << context.error().message;
-        context_.emplace(std::move(*context));
-        device_ = makeGlDevice(ShaderFiles::developer());
-        auto renderer = WaterRenderer::create({});
-        ASSERT_TRUE(renderer) << renderer.error().message;
-        renderer_ = std::move(*renderer);
-    }
-    void TearDown() override {
-        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
-        renderer_.reset();
-        device_.reset();
-    }
+    DryPicture() : HostWater(0) {}
     // `isWell`: whether the floor at x, z is seen through the volume alone.
     template <class Well>
     Changed draw(const FluidView& fluid, const FluidLookParams& params, const Well& isWell) {
@@ -66,10 +49,6 @@ class DryPicture : public ::testing::Test {
         }
         return changed;
     }
-
-    std::optional<ContextEgl> context_;
-    std::unique_ptr<Device> device_;
-    std::unique_ptr<WaterRenderer> renderer_;
 };
 
 TEST_F(DryPicture, ShowsNoWaterInAWell) {
@@ -83,7 +62,7 @@ TEST_F(DryPicture, ShowsNoWaterInAWell) {
     const auto inRound = [](vec2 p) { return glm::length((p - 0.5F) / vec2(0.15F, 0.12F)) < 0.93F; };  // sqrt(1 - (0.2 / 0.6)^2): 0.943
     for (const char* quality : {"fine", "fast"})
         for (const bool isBox : {true, false}) {
-            FluidParams p = HostScene::water();
+            FluidParams p = testing::hostWater();
             p.spacing = 0.03F;
             Sources sources{.dry = {isBox ? box : round}};
             auto world = FluidWorld::create(*device_, p, {}, {}, sources);

@@ -12,6 +12,7 @@
 #include "engine/core/mesh_view.h"
 #include "engine/core/result.h"
 #include "fluid/capi/rivulet.h"
+#include "fluid/sim/query/volumes.h"
 #include "fluid/sim/world/pose.h"
 
 namespace rivulet::capi {
@@ -31,6 +32,9 @@ inline mat4 matrixOf(const float* m) {
 }
 Pose poseOf(const rivulet_pose& pose);
 rivulet_pose poseOf(const Pose& pose);
+
+// Error (badInput): an unknown shape.
+Result<Volume> volumeOf(const rivulet_volume& volume, const std::string& name);
 
 // A caller's mesh. Error (badInput): NULL arrays, counts that give no triangles, an index without a vertex, values that are not finite.
 struct HostMesh {

@@ -68,7 +68,8 @@ rivulet_buffers buffersOf(const FluidView& fluid) {
             .count = fluid.count,
             .radius = fluid.radius,
             .wet_cells = fluid.wetCells,
-            .wetness = fluid.wetness};
+            .wetness = fluid.wetness,
+            .attributes = {fluid.attributes[0], fluid.attributes[1], fluid.attributes[2], fluid.attributes[3]}};
 }
 
 }  // namespace rivulet::capi

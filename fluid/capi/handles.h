@@ -57,9 +57,10 @@ struct WorldParams {
     FluidParams fluid;
     std::vector<EmitterParams> emitters;
     std::vector<SinkParams> sinks;
+    std::vector<DryParams> dry;
     FluidLookParams look;
     void visit(ParamVisitor& v);
-    void visitSources(ParamVisitor& v);  // emitters and sinks
+    void visitSources(ParamVisitor& v);  // emitters, sinks and dry volumes
 };
 
 // A host's functions as a BodyHost.

@@ -107,7 +107,7 @@ class _PassTime(Structure):
 
 class _Particles(Structure):
     _fields_ = [("size", c_size_t), ("capacity", c_size_t), ("positions", c_void_p), ("velocities", c_void_p), ("densities", c_void_p),
-                ("ids", c_void_p), ("count", c_size_t)]
+                ("ids", c_void_p), ("count", c_size_t), ("attributes", c_void_p * 4)]
 
 
 class _SkinOptions(Structure):
@@ -159,6 +159,8 @@ for _name, _arguments in {
         "world_bodies": [c_void_p, c_void_p, c_size_t], "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_cast": [c_void_p, c_void_p, c_size_t, c_void_p], "world_heights": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_wetness": [c_void_p, c_void_p, c_size_t, c_void_p],
+        "world_set_attribute": [c_void_p, ctypes.c_uint32, c_void_p, c_void_p, c_size_t],
+        "world_paint": [c_void_p, ctypes.c_uint32, c_void_p, c_void_p],
         "world_set_volumes": [c_void_p, c_void_p, c_size_t], "world_volumes": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
         "world_volume_events": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
         "world_loads": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)], "world_export": [c_void_p, c_char_p],
@@ -334,6 +336,17 @@ def _view(address, dtype, count):
     return np.frombuffer((ctypes.c_char * (dtype.itemsize * count)).from_address(address), dtype)
 
 
+def _rows(volumes):
+    rows = np.zeros(len(volumes), _VOLUME)
+    for row, volume in zip(rows, volumes):
+        row["id"], row["position"] = _whole(volume.id, 0, 2**32 - 1, "a volume's id"), volume.position
+        if isinstance(volume, Box):
+            row["size"] = volume.size
+        else:
+            row["shape"], row["radius"] = 1, volume.radius
+    return rows
+
+
 class World(_Handle):
     """Particles in a box, with walls and bodies; see Context.world."""
 
@@ -372,6 +385,8 @@ class World(_Handle):
         pointer = c_void_p()
         self._checked("world_create", context._pointer, options, pointer)
         self._pointer = pointer
+        fluid = json.loads(_text(scene)).get("fluid", {}) if scene else {}
+        self._attributes = [attribute["name"] for attribute in fluid.get("attributes", [])]
 
     def _checked(self, *arguments):
         self._raised.clear()
@@ -413,6 +428,33 @@ class World(_Handle):
         asked = _struct(_Particles, capacity=n, **{name: _at(array) for name, array in zip(Particles._fields, arrays)})
         _call("world_particles", self._pointer, asked)
         return arrays
+
+    def attributes(self):
+        """The values of fluid.attributes now, by name, (n, 4) each: in the order of particles(), until the next step."""
+        asked = _struct(_Particles)
+        _call("world_particles", self._pointer, asked)
+        arrays = {name: np.empty((asked.count, 4), np.float32) for name in self._attributes}
+        asked = _struct(_Particles, capacity=asked.count)
+        for k, values in enumerate(arrays.values()):
+            asked.attributes[k] = _at(values)
+        _call("world_particles", self._pointer, asked)
+        return arrays
+
+    def set_attribute(self, name, ids, values):
+        """Sets an attribute of the particles with these ids: values (n, 4)."""
+        ids, values = _array(ids, (-1,), "ids", np.uint32), _array(values, (-1, 4), "values")
+        if len(ids) != len(values):
+            raise BadInput(f"{len(values)} values were given for {len(ids)} particles: give one for each")
+        _call("world_set_attribute", self._pointer, self._attribute(name), _at(ids), _at(values), len(ids))
+
+    def paint(self, name, volume, value):
+        """Sets an attribute of all particles that are in a volume now, a Box or Sphere: value (4,)."""
+        _call("world_paint", self._pointer, self._attribute(name), _at(_rows([volume])), _at(_array(value, (4,), "value")))
+
+    def _attribute(self, name):
+        if name not in self._attributes:
+            raise BadInput(f"'{name}' is no attribute: fluid.attributes has {', '.join(self._attributes) or 'none'}")
+        return self._attributes.index(name)
 
     def bodies(self):
         """The states of the bodies now: an array with the fields position (m), rotation (x y z w), velocity (m/s) and spin (rad/s)."""
@@ -460,13 +502,7 @@ class World(_Handle):
 
     def set_volumes(self, volumes):
         """Counts particles in these volumes, Box or Sphere, at most 32; they replace those set before."""
-        rows = np.zeros(len(volumes), _VOLUME)
-        for row, volume in zip(rows, volumes):
-            row["id"], row["position"] = _whole(volume.id, 0, 2**32 - 1, "a volume's id"), volume.position
-            if isinstance(volume, Box):
-                row["size"] = volume.size
-            else:
-                row["shape"], row["radius"] = 1, volume.radius
+        rows = _rows(volumes)
         _call("world_set_volumes", self._pointer, _at(rows), len(rows))
 
     def _counts(self, name):

@@ -49,6 +49,8 @@ typedef struct rivulet_buffers {
     float radius;       /* m, of a drawn sphere */
     uint32_t wet_cells; /* GL name; int each: see rivulet_world_wet_solid. 0 without fluid.wetness.on */
     uint32_t wetness;   /* GL name; float each: 0 dry .. 1 wet. Another buffer after each step */
+    uint32_t
+        attributes[RIVULET_ATTRIBUTES]; /* GL names; vec4 each, in the order of position: the values of fluid.attributes; 0 beyond them */
 } rivulet_buffers;
 RIVULET_API rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buffers, rivulet_error* why);
 

@@ -84,6 +84,10 @@ RIVULET_API rivulet_status rivulet_world_volumes(rivulet_world* world, rivulet_v
 RIVULET_API rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
                                                        rivulet_error* why);
 
+/* Sets fluid.attributes[attribute] of all particles that are in the volume now; its id is not read. `value`: 4 floats. Does not wait. */
+RIVULET_API rivulet_status rivulet_world_paint(rivulet_world* world, uint32_t attribute, const rivulet_volume* volume, const float* value,
+                                               rivulet_error* why);
+
 /* What fluid.probes measured: the load of the fluid on walls and bodies, in world axes. Means are over the last frame that has arrived; on
    a GPU two or three frames ago. Probes are part of the world's json, or set with rivulet_world_set while their number stays. Their `on` is
    box, body or collider; collider k is walls[k]. */

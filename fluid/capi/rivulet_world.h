@@ -64,8 +64,8 @@ typedef struct rivulet_body_host {
 
 typedef struct rivulet_world_options {
     size_t size;
-    /* {"fluid": {...}, "emitters": [...], "sinks": [...], "look": {...}}, as in a scene file; docs/parameters.md lists all keys. NULL: {}
-     */
+    /* {"fluid": {...}, "emitters": [...], "sinks": [...], "dry": [...], "look": {...}}, as in a scene file; docs/parameters.md lists all
+       keys. NULL: {} */
     const char* json;
     const rivulet_mesh* walls; /* in the world's frame; walls that move in their own frame */
     size_t walls_count;
@@ -134,15 +134,18 @@ RIVULET_API rivulet_status rivulet_world_add_wall(rivulet_world* world, const ri
 RIVULET_API rivulet_status rivulet_world_remove_wall(rivulet_world* world, uint32_t id, rivulet_error* why);
 /* `state`: a rivulet_wall_state. RIVULET_FAILED: its bake failed, and why; it never acts. RIVULET_BAD_INPUT: there is no such wall. */
 RIVULET_API rivulet_status rivulet_world_wall(const rivulet_world* world, uint32_t id, int32_t* state, rivulet_error* why);
-/* Sets all emitters and sinks: {"emitters": [...], "sinks": [...]}, as in the world's json; a list that is absent is empty. With another
-   number of either than before, all emitters begin anew. Emitters spawn into free memory: fluid.maxParticles reserves it.
-   RIVULET_BAD_INPUT: another number in a world with skins_bring above 0, or with fluid.grid linked_list. */
+/* Sets all emitters, sinks and dry volumes: {"emitters": [...], "sinks": [...], "dry": [...]}, as in the world's json; a list that is
+   absent is empty. A dry volume, such as the inside of a boat, has no water: the picture is cut there, and particles in it are removed
+   after each step. With `body`, a body's index, it moves with it. With another number of emitters or sinks than before, all emitters begin
+   anew. Emitters spawn into free memory: fluid.maxParticles reserves it. RIVULET_BAD_INPUT: another number in a world with skins_bring
+   above 0, or with fluid.grid linked_list. */
 RIVULET_API rivulet_status rivulet_world_set_sources(rivulet_world* world, const char* json, rivulet_error* why);
 /* On a GPU the values are two or three frames old. */
 RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why);
 
 /* Copies the particles to host memory, at most `capacity`. Their order changes from step to step; ids do not. Arrays may be NULL. Waits for
    the device. */
+enum { RIVULET_ATTRIBUTES = 4 }; /* at most, of a world */
 typedef struct rivulet_particles {
     size_t size;
     size_t capacity;   /* of each array */
@@ -150,9 +153,15 @@ typedef struct rivulet_particles {
     float* velocities; /* m/s, 3 each */
     float* densities;  /* over the rest density */
     uint32_t* ids;
-    size_t count; /* out: the number of all particles, also where capacity is smaller */
+    size_t count;                          /* out: the number of all particles, also where capacity is smaller */
+    float* attributes[RIVULET_ATTRIBUTES]; /* 4 each: the values of fluid.attributes */
 } rivulet_particles;
 RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why);
+
+/* Sets fluid.attributes[attribute] of the particles with these ids: `values` are 4 floats each, finite. The water does not depend on it; a
+   reset gives them their values of t = 0 again. Does not wait. rivulet_world_paint, in rivulet_query.h, does it in a volume. */
+RIVULET_API rivulet_status rivulet_world_set_attribute(rivulet_world* world, uint32_t attribute, const uint32_t* ids, const float* values,
+                                                       size_t count, rivulet_error* why);
 
 /* The states of the bodies now, in their order; `count` must be their number. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);

@@ -215,14 +215,9 @@ rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_vol
         if (count > 0 && volumes == nullptr) return badInput("volumes is NULL, and count is not 0");
         std::vector<Volume> all;
         for (size_t k = 0; k < count; ++k) {
-            const rivulet_volume& v = volumes[k];
-            if (v.shape != RIVULET_BOX && v.shape != RIVULET_SPHERE)
-                return badInput(fmt::format("volumes[{}].shape is {}: use RIVULET_BOX or RIVULET_SPHERE", k, static_cast<int>(v.shape)));
-            all.push_back({.id = v.id,
-                           .shape = v.shape == RIVULET_BOX ? Volume::box : Volume::sphere,
-                           .position = vectorOf(v.position),
-                           .size = vectorOf(v.size),
-                           .radius = v.radius});
+            const Result<Volume> volume = volumeOf(volumes[k], fmt::format("volumes[{}]", k));
+            if (!volume) return volume.error();
+            all.push_back(*volume);
         }
         return world->world->setVolumes(all);
     });

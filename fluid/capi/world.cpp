@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "engine/core/json.h"
@@ -20,6 +21,7 @@ namespace rivulet::capi {
 void WorldParams::visitSources(ParamVisitor& v) {
     v.list({.name = "emitters", .doc = "sources of water"}, emitters);
     v.list({.name = "sinks", .doc = "regions that remove water"}, sinks);
+    v.list({.name = "dry", .doc = "volumes that stay dry"}, dry);
 }
 
 void WorldParams::visit(ParamVisitor& v) {
@@ -37,6 +39,7 @@ VisitFn visiting(WorldParams& params) {
 Result<Sources> sourcesOf(const WorldParams& params) {
     Sources sources;
     sources.sinks = params.sinks;
+    sources.dry = params.dry;
     for (size_t k = 0; k < params.emitters.size(); ++k) {
         if (params.emitters[k].shape == "mesh")
             return badInput(fmt::format("emitters[{}].shape is mesh: use nozzle or box, a mesh needs a scene file", k));
@@ -311,6 +314,7 @@ rivulet_status rivulet_world_set_sources(rivulet_world* world, const char* json,
         WorldParams changed = world->params;
         changed.emitters.clear();
         changed.sinks.clear();
+        changed.dry.clear();
         if (Status read = readJson(json, "json", [&changed](ParamVisitor& v) { changed.visitSources(v); }); !read) return read;
         Result<Sources> sources = sourcesOf(changed);
         if (!sources) return sources.error();
@@ -374,6 +378,8 @@ rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* 
             if (to.velocities != nullptr) put(vec3(all.velocity[n]), to.velocities + 3 * n);
             if (to.densities != nullptr) to.densities[n] = all.position[n].w;
             if (to.ids != nullptr) to.ids[n] = all.id[n];
+            for (size_t k = 0; k < all.attributes.size(); ++k)
+                if (to.attributes[k] != nullptr) std::memcpy(to.attributes[k] + 4 * n, &all.attributes[k][n].x, 4 * sizeof(float));
         }
         rivulet_particles full = to;
         full.count = all.position.size();

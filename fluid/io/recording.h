@@ -17,6 +17,7 @@
 #include "engine/core/math.h"
 #include "engine/core/new_file.h"
 #include "engine/core/result.h"
+#include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 
@@ -29,9 +30,11 @@ struct RecordedFrame {
     std::vector<uint32_t> id;                     // constant for a particle from frame to frame
     std::vector<vec4> normal, absorption;         // as ParticleView; empty: none
     std::array<std::vector<vec4>, 3> ellipsoids;  // as ParticleView; empty: none
-    std::vector<vec4> foam, foamVelocity;         // as ParticleView::foamDrawn and foamVelocity
-    std::vector<mat4> places;                     // of solids that move, own frame -> world
-    std::vector<vec3> corners;                    // m, of solids that bend, one after the other
+    // As ParticleView; empty: none. A file does not hold them: of a frame that was read they are empty.
+    std::array<std::vector<vec4>, kMostAttributes> attributes;
+    std::vector<vec4> foam, foamVelocity;  // as ParticleView::foamDrawn and foamVelocity
+    std::vector<mat4> places;              // of solids that move, own frame -> world
+    std::vector<vec3> corners;             // m, of solids that bend, one after the other
 };
 
 class RecordingWriter {

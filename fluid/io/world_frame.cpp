@@ -49,6 +49,7 @@ void frameOf(const FluidWorld& world, RecordedFrame& frame) {
     read(particles.id, frame.id);
     read(particles.normal, frame.normal);
     read(particles.absorption, frame.absorption);
+    for (size_t k = 0; k < kMostAttributes; ++k) read(particles.attributes[k], frame.attributes[k]);
     for (size_t k = 0; k < frame.ellipsoids.size(); ++k) read(particles.ellipsoids[k], frame.ellipsoids[k]);
 }
 

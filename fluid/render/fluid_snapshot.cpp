@@ -16,6 +16,7 @@ Status FluidSnapshot::take(const FluidWorld& world, std::span<const vec4> drops,
     Device& device = world.device();
     onGpu_ = device.backend() == Backend::gl;
     viscosity_ = world.particles().viscosity;
+    dry_ = world.dry();
     const WetnessView wet = world.wetness();
     wetSurface_ = wet.surface && !wet.surface->points.empty() ? wet.surface : nullptr;
     if (onGpu_) {
@@ -36,6 +37,7 @@ void FluidSnapshot::take(RecordedFrame frame, float viscosity) {
     pendants_.clear();
     viscosity_ = viscosity;
     wetSurface_ = nullptr;
+    dry_.clear();
     onGpu_ = false;
     taken_ = true;
 }
@@ -72,6 +74,8 @@ Status FluidSnapshot::takeOnGpu(const FluidWorld& world) {
                                           {&foam_[1], particles.foamVelocity, foam},
                                           {&wet_, world.wetness().values, wetSurface_ ? wetSurface_->points.size() * sizeof(float) : 0}})
         if (Status done = copy(*to, from, bytes); !done) return done;
+    for (size_t k = 0; k < kMostAttributes; ++k)
+        if (Status done = copy(attributes_[k], particles.attributes[k], vectors); !done) return done;
     return ok();
 }
 

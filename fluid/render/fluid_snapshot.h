@@ -14,6 +14,7 @@
 #include "engine/compute/device.h"
 #include "fluid/io/recording.h"
 #include "fluid/sim/solids/wet_surface.h"
+#include "shaders/fluid/sources/dry_volume.h"
 
 namespace rivulet {
 
@@ -40,6 +41,7 @@ class FluidSnapshot {
     std::shared_ptr<const WetSurface> wetSurface_;
     std::vector<float> wetness_;  // of cpu and cl
     std::vector<vec4> drops_, pendants_;
+    std::vector<DryVolume> dry_;
     // Of gl.
     struct Copy {
         Buffer memory;
@@ -48,6 +50,7 @@ class FluidSnapshot {
     };
     uint32_t count_ = 0, foamCount_ = 0;
     Copy position_, velocity_, normal_, id_, absorption_, wet_;
+    std::array<Copy, kMostAttributes> attributes_;
     std::array<Copy, 3> ellipsoids_;
     std::array<Copy, 2> foam_;
 };

@@ -54,18 +54,22 @@ Status FluidUpload::Target::makeRoom(size_t bytes) {
     return rivulet::makeRoom(memory, bytes);
 }
 
+template <class Self>
+auto FluidUpload::targets(Self& of) {
+    std::vector all = {&of.position_,      &of.velocity_,      &of.id_,           &of.absorption_, &of.foam_[0], &of.foam_[1], &of.wetness_,
+                       &of.ellipsoids_[0], &of.ellipsoids_[1], &of.ellipsoids_[2]};
+    for (auto& attribute : of.attributes_) all.push_back(&attribute);
+    return all;
+}
+
 void FluidUpload::dropTargets() {
-    for (Target* to :
-         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &wetness_, &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
-        to->drop();
+    for (Target* to : targets(*this)) to->drop();
     held_ = {};
 }
 
 size_t FluidUpload::bytes() const {
     size_t sum = ring_.bytes() + drops_.bytes() + pendants_.bytes() + wetCells_.bytes();
-    for (const Target* to :
-         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &wetness_, &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
-        sum += to->memory.bytes();
+    for (const Target* to : targets(*this)) sum += to->memory.bytes();
     return sum;
 }
 
@@ -141,6 +145,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);
     if (Status s = bringDrops(drops, pendants, out); !s) return s.error();
+    out.dry = world.dry();
     out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
     // The shader of the points reads normals in place of velocities. Before the first step there are no normals.
     std::vector<Array> arrays;
@@ -171,6 +176,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         wanted(particles.drawn, position_, out.position, true);
         wanted(normals ? particles.normal : particles.velocity, velocity_, out.velocity, true);
         wanted(particles.absorption, absorption_, out.absorption, true);
+        for (size_t k = 0; k < kMostAttributes; ++k) wanted(particles.attributes[k], attributes_[k], out.attributes[k], true);
         for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k)
             wanted(particles.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
         if (same) out.id = static_cast<unsigned>(particles.id->handle());
@@ -254,6 +260,7 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
     wanted(frame.position, position_, out.position, true);
     wanted(normals ? frame.normal : frame.velocity, velocity_, out.velocity, true);
     wanted(frame.absorption, absorption_, out.absorption, true);
+    for (size_t k = 0; k < kMostAttributes; ++k) wanted(frame.attributes[k], attributes_[k], out.attributes[k], true);
     for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) wanted(frame.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
     ids_ = frame.id;
     if (!arrays.empty())
@@ -279,6 +286,7 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out.velocity = normals && s.normal_.used ? s.normal_.name() : s.velocity_.name();
         out.id = s.id_.name();
         out.absorption = s.absorption_.name();
+        for (size_t k = 0; k < kMostAttributes; ++k) out.attributes[k] = s.attributes_[k].name();
         for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) out.ellipsoids[k] = s.ellipsoids_[k].name();
         out.foam = {s.foam_[0].name(), s.foam_[1].name()};
         out.foamCount = s.foamCount_;
@@ -288,6 +296,7 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out = *uploaded;
     }
     out.viscosity = s.viscosity_;
+    out.dry = s.dry_;
     if (Status brought = bringDrops(s.drops_, s.pendants_, out); !brought) return brought.error();
     if (!s.wetSurface_) {
         hold(s.revision_, look, normals, out);

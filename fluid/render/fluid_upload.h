@@ -67,6 +67,8 @@ class FluidUpload {
     };
     Status room(std::span<const Array> arrays, size_t others, bool ring) const;
     void follow(std::shared_ptr<const GlSharing> sharing);
+    template <class Self>
+    static auto targets(Self& of);  // pointers to all Targets
     void dropTargets();
     bool holds(const std::shared_ptr<const void>& revision, const FluidLookParams& look, bool normals) const;
     void hold(std::shared_ptr<const void> revision, const FluidLookParams& look, bool normals, const FluidView& view);
@@ -79,6 +81,7 @@ class FluidUpload {
     gpu::StagingRing ring_;
     gpu::Buffer drops_, pendants_;
     Target position_, velocity_, id_, absorption_;
+    std::array<Target, kMostAttributes> attributes_;
     std::array<Target, 2> foam_;
     Target wetness_;
     gpu::Buffer wetCells_;

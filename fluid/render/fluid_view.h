@@ -9,8 +9,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/core/math.h"
+#include "fluid/sim/world/fluid_params.h"
+#include "shaders/fluid/sources/dry_volume.h"
 
 namespace rivulet {
 
@@ -21,6 +24,8 @@ struct FluidView {
     // GL buffer name, vec4: xyz absorption of red, green and blue by the particle's liquid and dye, w scattering, 1/m, added to
     // FluidLook's; w < 0: they replace FluidLook's, and the scattering is -1 - w. 0: all particles are alike.
     unsigned absorption = 0;
+    // GL buffer names, vec4 each: the values of FluidParams::attributes, in its order; 0 beyond them. For shaders of a host.
+    std::array<unsigned, kMostAttributes> attributes = {};
     // GL buffer names, vec4 each, of the ellipsoids around the particles (shaders/fluid/surface/ellipsoids.kernel): centre, spread, slant.
     // 0: particles are drawn as spheres.
     std::array<unsigned, 3> ellipsoids = {};
@@ -37,6 +42,7 @@ struct FluidView {
     // Spray, foam and bubbles: GL buffer names, as ParticleView::foamDrawn and foamVelocity.
     std::array<unsigned, 2> foam = {};
     uint32_t foamCount = 0;
+    std::vector<DryVolume> dry = {};  // where the surface is cut: FluidWorld::dry()
     // The wetness of solids: GL buffer names, WetnessView::cells and values. 0: all is dry.
     unsigned wetCells = 0, wetness = 0;
     size_t wetCellBytes = 0, wetnessBytes = 0;

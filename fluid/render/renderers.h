@@ -84,6 +84,9 @@ struct WaterSurface {
     gpu::TextureHandle normals;    // xyz view space, w m of water instead of thickness.x; empty: they come from the depth
     gpu::TextureHandle fades;      // absorption of red, green and blue; empty: particles are alike
 };
+// `depth` without the surface inside FluidView::dry; `tiles` as of addTiles.
+gpu::TextureHandle addDryCut(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles,
+                             gpu::TextureHandle depth);
 // Sets tiles, thickness and fades: of the spheres, blurred. `kept`: of this view, or null.
 WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles,
                           const std::shared_ptr<KeptPicture>& kept = {});

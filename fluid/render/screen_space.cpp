@@ -45,6 +45,7 @@ constexpr ProgramRow kScreenSpacePrograms[] = {
     {"water blocks", "render/fullscreen.vert", "screen_space/water_blocks.frag"},
     {"water tiles", "render/fullscreen.vert", "screen_space/water_tiles.frag"},
     {"refine", "screen_space/tile.vert", "screen_space/refine.frag"},
+    {"dry cut", "screen_space/tile.vert", "screen_space/dry_cut.frag"},
     {"show view", "screen_space/tile.vert", "screen_space/show_view.frag"},
     {"blur", "screen_space/tile.vert", "screen_space/blur.frag"},
     {"light water", "screen_space/light_water.vert", "screen_space/light_water.frag"},
@@ -476,7 +477,9 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     return from;
 }
 
-FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const WaterSurface& water) {
+FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const WaterSurface& whole) {
+    WaterSurface water = whole;
+    if (!d.fluid.dry.empty()) water.depth = addDryCut(graph, programs, d, water.tiles, water.depth);
     const bool ink = d.fluid.absorption != 0;
     d.behind(d.colour, water.depth);
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));

@@ -174,6 +174,7 @@ void SceneFile::visit(ParamVisitor& v) {
     v.list({.name = "colliders", .doc = "solids", .fixed = kFixed}, colliders);
     v.list({.name = "emitters", .doc = "sources of fluid"}, emitters);
     v.list({.name = "sinks", .doc = "regions that remove fluid"}, sinks);
+    v.list({.name = "dry", .doc = "volumes that stay dry, such as the inside of a boat"}, dry);
     v.group({.name = "pour", .doc = "the jet that a person pours (key P)"}, pour);
     v.list({.name = "bodies", .doc = "rigid bodies that float or sink in the fluid", .fixed = kFixed}, bodies);
     v.list({.name = "flow", .doc = "skins with a liquid on them: tears, rain, sweat", .fixed = kFixed}, flow);

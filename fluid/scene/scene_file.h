@@ -81,6 +81,7 @@ struct SceneFile {
     std::vector<ColliderParams> colliders;
     std::vector<EmitterParams> emitters;
     std::vector<SinkParams> sinks;
+    std::vector<DryParams> dry;
     PourParams pour;
     std::vector<BodyParams> bodies;
     std::vector<FlowParams> flow;

@@ -34,7 +34,8 @@ constexpr Part kParts[] = {
     {"ellipsoids about particles", "fluid.ellipsoids is false, and look draws spheres", "fluid/surface/ellipsoids", ""},
     {"emitters", "the scene has none", "fluid/sources/emit", ""},
     {"sinks", "the scene has none", "fluid/sources/drain", ""},
-    {"dyes", "all particles have the same colour", "fluid/world/gather_absorption", ""},
+    {"dry volumes", "the scene has none", "fluid/sources/dry", ""},
+    {"dyes and attributes", "all particles have the same colour, and fluid.attributes is empty", "fluid/world/gather_vectors", ""},
     {"positions between steps", "fluid.fixedStep is 0", "fluid/world/blend", ""},
 };
 

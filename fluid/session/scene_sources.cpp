@@ -26,7 +26,7 @@ Result<std::vector<vec3>> trianglesOf(const Placed& params, const std::string& f
 }  // namespace
 
 Status SceneSources::create(const SceneFile& scene) {
-    start_ = {.sinks = scene.sinks, .seconds = static_cast<double>(scene.duration), .least = scene.room};
+    start_ = {.sinks = scene.sinks, .dry = scene.dry, .seconds = static_cast<double>(scene.duration), .least = scene.room};
     start_.expectedDeposit = SkinFlows::expectedDeposit(scene, start_.seconds);
     for (const EmitterParams& params : scene.emitters) {
         Emitter emitter{params, {}};
@@ -52,7 +52,7 @@ Status SceneSources::create(const SceneFile& scene) {
 }
 
 Sources SceneSources::now(const SceneFile& scene) const {
-    Sources sources{.sinks = scene.sinks};
+    Sources sources{.sinks = scene.sinks, .dry = scene.dry};
     for (const EmitterParams& params : scene.emitters) sources.emitters.push_back({params, {}});
     if (scene.pour.litres > 0) sources.emitters.push_back({pouring(scene.pour, scene.fluid, target_), {}});
     return sources;

@@ -110,6 +110,9 @@ TEST(StateFile, FixedValuesThatDifferAreNamed) {
     EXPECT_TRUE(sameFixedValues("l.0.a = 1\nl.0.b = 2\n", "l.0.new = 7\nl.0.a = 1\nl.0.b = 2\n")) << "a parameter of a later version";
     EXPECT_FALSE(sameFixedValues("l.0.a = 1\nl.0.b = 2\n", "l.0.new = 7\nl.0.a = 1\nl.0.b = 3\n"));
     EXPECT_FALSE(sameFixedValues("l.0.a = 1\n", "l.0.a = 1\nl.1.a = 1\n")) << "another item";
+    EXPECT_TRUE(sameFixedValues("a = 1\n", "new = 1 items\nnew.0.x = 2\na = 1\n")) << "a list of a later version";
+    EXPECT_TRUE(sameFixedValues("l.0.a = 1\n", "l.0.new = 1 items\nl.0.new.0.x = 2\nl.0.a = 1\n")) << "in an item";
+    EXPECT_FALSE(sameFixedValues("new = 0 items\na = 1\n", "new = 1 items\nnew.0.x = 2\na = 1\n"));
     EXPECT_TRUE(sameFixedValues("f.a = 1\n", "f.a = 1\nf.new.on = false\n")) << "a group of a later version";
     EXPECT_TRUE(sameFixedValues("f.a = 1\n", "f.a = 1\nnew.on = false\n"));
     EXPECT_TRUE(sameFixedValues("f.l.0.a = 1\n", "f.l.0.a = 1\nf.l.0.new.on = false\n")) << "in an item";

@@ -11,12 +11,20 @@
 
 namespace rivulet {
 
-namespace {
-
 SinkVolume shapeOf(const Volume& v) {
     if (v.shape == Volume::sphere) return {vec4(v.position, 1.0F), vec4(v.radius, 0.0F, 0.0F, 0.0F)};
     return {vec4(v.position - 0.5F * v.size, 0.0F), vec4(v.position + 0.5F * v.size, 0.0F)};
 }
+
+Status checkVolume(const Volume& v, const std::string& what) {
+    const bool sound = v.shape == Volume::sphere
+                           ? v.radius >= 0 && std::isfinite(v.radius)
+                           : v.shape == Volume::box && isFinite(v.size) && glm::all(glm::greaterThanEqual(v.size, vec3(0.0F)));
+    if (sound && isFinite(v.position)) return ok();
+    return badInput(fmt::format("{} has a position or size that is invalid: use metres, none negative", what));
+}
+
+namespace {
 
 Status check(std::span<const Volume> volumes) {
     if (volumes.size() > VolumePasses::kMost)
@@ -24,11 +32,7 @@ Status check(std::span<const Volume> volumes) {
             fmt::format("{} volumes are more than the {} that can be watched: watch fewer", volumes.size(), VolumePasses::kMost));
     for (size_t k = 0; k < volumes.size(); ++k) {
         const Volume& v = volumes[k];
-        const bool sound = v.shape == Volume::sphere
-                               ? v.radius >= 0 && std::isfinite(v.radius)
-                               : v.shape == Volume::box && isFinite(v.size) && glm::all(glm::greaterThanEqual(v.size, vec3(0.0F)));
-        if (!sound || !isFinite(v.position))
-            return badInput(fmt::format("volume {} has a position or size that is invalid: use metres, none negative", v.id));
+        if (Status sound = checkVolume(v, fmt::format("volume {}", v.id)); !sound) return sound;
         for (size_t j = 0; j < k; ++j)
             if (volumes[j].id == v.id) return badInput(fmt::format("two volumes have the id {}: give each its own", v.id));
     }

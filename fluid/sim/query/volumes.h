@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/compute/device.h"
@@ -28,6 +29,10 @@ struct Volume {
     vec3 size{0.1F};       // m, of a box
     float radius = 0.05F;  // m, of a sphere
 };
+
+// Error (badInput): `what` has a position or size that is not finite or negative.
+Status checkVolume(const Volume& volume, const std::string& what);
+SinkVolume shapeOf(const Volume& volume);  // of a sound one
 
 // Of one volume, in particles.
 struct VolumeCount {

@@ -222,6 +222,13 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
     }
 }
 
+std::vector<Pose> BodyPasses::starts() const {
+    std::vector<Pose> poses;
+    poses.reserve(bodies_.size());
+    for (const Body& body : bodies_) poses.push_back(body.state.pose);
+    return poses;
+}
+
 void BodyPasses::reset() {
     for (size_t k = 0; k < bodies_.size(); ++k) states_[k] = bodies_[k].state;
     std::fill(loads_.begin(), loads_.end(), BodyLoad{});

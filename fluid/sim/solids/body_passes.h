@@ -34,6 +34,7 @@ class BodyPasses {
     std::vector<vec4> matter() const;
 
     const std::vector<BodyState>& states() const { return states_; }
+    std::vector<Pose> starts() const;                        // at t = 0
     float reach(size_t body) const { return reach_[body]; }  // m, from the centre of mass to the farthest sample
     // True if the body's surface has moved by more than `way` (m) from where it was at the pose `from`. A ball that turns has not moved.
     bool movedBy(size_t body, const Pose& from, float way) const;

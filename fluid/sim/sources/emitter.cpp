@@ -62,6 +62,7 @@ void EmitterParams::visit(ParamVisitor& v) {
     v.value({"stop", "s", "time at which the emitter stops; 0 = never", 0, 3600}, stop);
     visitLiquid(v, "liquid of the emitter; empty = that of fluid.liquid", liquid);
     visitDye(v, dye, dyeAmount, dyeScattering);
+    v.list({.name = "attributes", .doc = "values of fluid.attributes that the particles of the emitter have"}, attributes);
 }
 
 void SinkParams::visit(ParamVisitor& v) {

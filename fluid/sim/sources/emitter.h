@@ -9,6 +9,7 @@
 #include "engine/core/params.h"
 #include "engine/core/result.h"
 #include "fluid/sim/sources/block.h"
+#include "fluid/sim/sources/dry.h"
 #include "shaders/fluid/sources/emit_params.h"
 
 namespace rivulet {
@@ -16,19 +17,20 @@ namespace rivulet {
 struct EmitterParams {
     std::string shape = "nozzle";  // nozzle | box | mesh
     float litresPerSecond = 1.0F;
-    float speed = 0.0F;                 // m/s; of a nozzle 0 = what the rate needs through its opening
-    vec3 position{0.0F, 1.0F, 0.0F};    // m, the opening's centre, or the box's; mesh: where its origin goes
-    vec3 direction{0.0F, -1.0F, 0.0F};  // nozzle, box; any length but 0
-    float radius = 0.05F;               // m, nozzle
-    vec3 size{0.2F};                    // m, box
-    std::string mesh = {};              // file, as of a collider
-    float fitSize = 0.0F;               // m, mesh: its longest side; 0 = as it is
-    vec3 rotation{0.0F};                // deg, mesh
-    float start = 0.0F, stop = 0.0F;    // s; stop 0 = never
-    std::string liquid = {};            // a row of liquids(); "" = the world's
-    vec3 dye{1.0F};                     // linear; white = none
-    float dyeAmount = 20.0F;            // 1/m
-    float dyeScattering = 0.0F;         // 1/m
+    float speed = 0.0F;                                // m/s; of a nozzle 0 = what the rate needs through its opening
+    vec3 position{0.0F, 1.0F, 0.0F};                   // m, the opening's centre, or the box's; mesh: where its origin goes
+    vec3 direction{0.0F, -1.0F, 0.0F};                 // nozzle, box; any length but 0
+    float radius = 0.05F;                              // m, nozzle
+    vec3 size{0.2F};                                   // m, box
+    std::string mesh = {};                             // file, as of a collider
+    float fitSize = 0.0F;                              // m, mesh: its longest side; 0 = as it is
+    vec3 rotation{0.0F};                               // deg, mesh
+    float start = 0.0F, stop = 0.0F;                   // s; stop 0 = never
+    std::string liquid = {};                           // a row of liquids(); "" = the world's
+    vec3 dye{1.0F};                                    // linear; white = none
+    float dyeAmount = 20.0F;                           // 1/m
+    float dyeScattering = 0.0F;                        // 1/m
+    std::vector<LiveAttributeParams> attributes = {};  // of its particles, as of BlockParams
     void visit(ParamVisitor& v);
 };
 
@@ -51,7 +53,8 @@ struct Emitter {
 struct Sources {
     std::vector<Emitter> emitters = {};
     std::vector<SinkParams> sinks = {};
-    double seconds = 10;  // how long emitters are expected to run: fluid.maxParticles = 0 makes room for that
+    std::vector<DryParams> dry = {};  // volumes without water
+    double seconds = 10;              // how long emitters are expected to run: fluid.maxParticles = 0 makes room for that
     // m^3 that FluidWorld::deposit() is expected to bring in that time, beyond what withdraw() removes. 0: there is no such exchange.
     double expectedDeposit = 0;
     double more = 0;     // m^3 there is room for beyond all that

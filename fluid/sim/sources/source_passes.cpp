@@ -11,6 +11,7 @@
 #include "engine/core/param_path.h"
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/attributes.h"
 #include "fluid/sim/world/state_check.h"
 #include "fluid/voxel/packed_array.h"
 
@@ -23,7 +24,7 @@ constexpr float kNearest = 0.8F;             // spacings
 // Largest density ratio of a new particle and its neighbours: beyond it the pressure would push them apart strongly.
 constexpr float kCrowded = 1.01F;
 
-Status check(const Sources& sources, float spacing) {
+Status check(const Sources& sources, float spacing, std::span<const AttributeParams> attributes) {
     for (size_t k = 0; k < sources.sinks.size(); ++k)
         if (Status s = checkParams(pathOf("sinks", k), sources.sinks[k]); !s) return s;
     if (!(sources.seconds >= 0) || !(sources.expectedDeposit >= 0) || !(sources.more >= 0))
@@ -34,6 +35,7 @@ Status check(const Sources& sources, float spacing) {
         if (Status s = checkParams(pathOf("emitters", k), e.params); !s) return s;
         if (!std::all_of(e.triangles.begin(), e.triangles.end(), [](const vec3& p) { return isFinite(p); }))
             return badInput(fmt::format("the mesh of emitters[{}] has coordinates that are NaN or infinite: correct them", k));
+        if (Status s = checkAttributes(attributes, e.params.attributes, fmt::format("emitters[{}]", k)); !s) return s;
         if (const std::string wrong = contradiction(e.params); !wrong.empty()) return badInput(fmt::format("emitters[{}].{}", k, wrong));
         // They are laid out as one layer, and that would take all the memory there is.
         if (const double layer = layerOf(e.params, spacing); layer > kMostCandidates)
@@ -51,7 +53,7 @@ Status check(const Sources& sources, float spacing) {
 }  // namespace
 
 Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources, const FluidParams& params, bool matter, bool absorption) {
-    if (Status s = check(sources, params.spacing); !s) return s.error();
+    if (Status s = check(sources, params.spacing, params.attributes); !s) return s.error();
     for (size_t k = 0; k < sources.emitters.size(); ++k)
         if (sources.emitters[k].params.shape == "mesh" && sources.emitters[k].triangles.size() < 3)
             return badInput(fmt::format("the mesh of emitters[{}] has no triangles: use another mesh", k));
@@ -60,6 +62,7 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
     s.matter_ = matter;
     s.absorption_ = absorption;
     s.spacing_ = params.spacing;
+    s.attributes_ = params.attributes;
     for (size_t k = 0; k < sources.emitters.size(); ++k) {
         const EmitterParams& e = sources.emitters[k].params;
         const LiquidOf liquid = liquidOf(params, e.liquid);
@@ -89,6 +92,15 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
     s.emit_ = *emit;
     s.drain_ = *drain;
     s.forget_ = *forget;
+    for (size_t k = 0; k < s.attributes_.size() && !s.feeds_.empty(); ++k) {
+        Result<Kernel> emitAttribute = device.kernel("fluid/sources/emit_attribute");
+        if (!emitAttribute) return emitAttribute.error();
+        s.emitAttribute_ = *emitAttribute;
+        Result<Buffer> made = device.allocate(s.feeds_.size() * sizeof(vec4));
+        if (!made) return made.error();
+        s.emittedAttributes_.push_back(std::move(*made));
+    }
+    s.writeAttributes();
     const size_t counters = s.feeds_.size() * EMITTER_COUNTERS + s.sinkCount_;
     for (auto [buffer, bytes] :
          {std::pair(&s.candidates_, s.feeds_.empty() ? 0 : kMostCandidates * sizeof(Candidate)),
@@ -123,14 +135,24 @@ void SourcePasses::writeSinks(const std::vector<SinkParams>& sinks) {
     if (!volumes.empty()) device_->writeAll<SinkVolume>(sinks_, volumes);
 }
 
+void SourcePasses::writeAttributes() {
+    for (size_t a = 0; a < emittedAttributes_.size(); ++a) {
+        std::vector<vec4> values;
+        values.reserve(feeds_.size());
+        for (const EmitterFeed& feed : feeds_) values.push_back(attributeOf(attributes_[a], feed.emitter().params.attributes));
+        device_->writeAll<vec4>(emittedAttributes_[a], values);
+    }
+}
+
 Status SourcePasses::set(const Sources& sources) {
     if (sources.emitters.size() + (deposits_ ? 1 : 0) != feeds_.size() || sources.sinks.size() != sinkCount_)
         return badInput("the number of emitters or sinks has changed: create a new world");
-    if (Status s = check(sources, spacing_); !s) return s;
+    if (Status s = check(sources, spacing_, attributes_); !s) return s;
     std::vector<EmitterFeed::Next> next;
     for (size_t k = 0; k < sources.emitters.size(); ++k) next.push_back(feeds_[k].prepare(sources.emitters[k].params));
     writeSinks(sources.sinks);
     for (size_t k = 0; k < next.size(); ++k) feeds_[k].take(std::move(next[k]));
+    writeAttributes();
     return ok();
 }
 
@@ -182,7 +204,7 @@ void SourcePasses::dropUnfit(const World& world) {
                 const auto [from, to] = taken.equal_range(keyOf(cell + ivec3(k % 3, k / 3 % 3, k / 9) - 1));
                 for (auto it = from; it != to && fits; ++it) fits = glm::dot(it->second - p, it->second - p) >= nearest2;
             }
-            fits = fits && world.solids.maySpawn(p, spacing_) && world.bodies.maySpawn(p, spacing_);
+            fits = fits && world.solids.maySpawn(p, spacing_) && world.bodies.maySpawn(p, spacing_) && !isDry(world.dry, p);
             if (fits) taken.emplace(keyOf(cell), p);
         }
         if (!fits) feeds_[static_cast<size_t>(c.position.w)].refuse(1);
@@ -225,6 +247,11 @@ void SourcePasses::run(const World& world, double time, double dt, bool last) {
     if (matter_) buffers.push_back(&particles.matterOf);
     if (absorption_) buffers.push_back(&particles.absorptionOf);
     device_->dispatch(emit_, std::as_bytes(std::span(&block, 1)), buffers, block.candidates);
+    for (size_t a = 0; a < emittedAttributes_.size(); ++a)
+        device_->run(
+            emitAttribute_, block,
+            {&grid.cellStart(), &candidates_, &particles.id, &particles.positionNext, &emittedAttributes_[a], &particles.attributesOf[a]},
+            block.candidates);
     if (device_->backend() == Backend::cpu) report();
 }
 

@@ -39,6 +39,7 @@ class SourcePasses {
         Particles& particles;  // sorted as the substep sorted them
         const SolidPasses& solids;
         const BodyPasses& bodies;
+        std::span<const DryVolume> dry;
         std::span<const NamedBuffer> remembered;  // of the method: its state per particle is removed with the particle
     };
     // After a substep of `dt` that ended at `time`; `last` of its frame.
@@ -75,6 +76,7 @@ class SourcePasses {
     };
     void readCounts();
     void writeSinks(const std::vector<SinkParams>& sinks);
+    void writeAttributes();
     void dropUnfit(const World& world);
     uint64_t meshesHash() const;
 
@@ -85,7 +87,9 @@ class SourcePasses {
     bool deposits_ = false;
     std::vector<uint32_t> reported_;  // per emitter: refusals that its feed has counted; wraps around with the counters
     size_t sinkCount_ = 0;
-    Kernel emit_, drain_, forget_;
+    std::vector<AttributeParams> attributes_;  // of the world
+    std::vector<Buffer> emittedAttributes_;    // of each: the value of each feed's particles
+    Kernel emit_, emitAttribute_, drain_, forget_;
     Buffer candidates_, sinks_, counters_;
     std::vector<Candidate> list_;
     double waited_ = 0;  // s since emitters last ran

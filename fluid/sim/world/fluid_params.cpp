@@ -55,6 +55,7 @@ void BlockParams::visit(ParamVisitor& v) {
              .doc = "whether solids are meant to cut the block; off: a notice reports how many particles they remove",
              .fixed = kFixed},
             cut);
+    v.list({.name = "attributes", .doc = "values of fluid.attributes that the particles of the block have", .fixed = kFixed}, attributes);
 }
 
 void BoxParams::visit(ParamVisitor& v) {
@@ -197,6 +198,11 @@ void FluidParams::visit(ParamVisitor& v) {
     v.group({.name = "box", .doc = "walls around the fluid; particles that leave the box are lost"}, box);
     v.group({.name = "collision", .doc = "contact of the fluid with solids"}, collision);
     v.list({.name = "blocks", .doc = "blocks of fluid at the start", .fixed = kFixed}, blocks);
+    v.list(
+        {.name = "attributes",
+         .doc = "values of each particle that a host sets and its shader reads, at most 4; here those of particles without another value",
+         .fixed = kFixed},
+        attributes);
     v.list({.name = "probes", .doc = "force, torque and pressure of the fluid on walls and bodies, as results"}, probes);
 }
 

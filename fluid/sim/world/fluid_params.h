@@ -13,6 +13,23 @@
 
 namespace rivulet {
 
+// A value of a particle that a host gives to it and reads: it has no effect on the water. Fixed: it cannot change while the water runs.
+template <bool Fixed>
+struct AttributeParamsOf {
+    std::string name = {};
+    float x = 0, y = 0, z = 0, w = 0;
+    vec4 value() const { return {x, y, z, w}; }
+    void visit(ParamVisitor& v) {
+        v.value({.name = "name", .doc = "name of the attribute", .fixed = Fixed}, name);
+        v.value({.name = "x", .doc = "first component of the value", .fixed = Fixed}, x);
+        v.value({.name = "y", .doc = "second component", .fixed = Fixed}, y);
+        v.value({.name = "z", .doc = "third component", .fixed = Fixed}, z);
+        v.value({.name = "w", .doc = "fourth component", .fixed = Fixed}, w);
+    }
+};
+using AttributeParams = AttributeParamsOf<kFixed>;
+using LiveAttributeParams = AttributeParamsOf<!kFixed>;
+
 // A body of particles at rest spacing, present at t = 0.
 struct BlockParams {
     vec3 min{0.0F}, max{0.0F};
@@ -31,6 +48,7 @@ struct BlockParams {
     vec3 rotation{0.0F};         // deg, mesh
     vec3 spin{0.0F};             // rad/s, about the centre between min and max
     vec3 gradientX{0.0F}, gradientY{0.0F}, gradientZ{0.0F};  // 1/s: of the velocity's x, y, z about that centre
+    std::vector<AttributeParams> attributes = {};            // of its particles; others have the values of FluidParams::attributes
     void visit(ParamVisitor& v);
 };
 
@@ -85,7 +103,8 @@ struct WetnessParams {
     void visit(ParamVisitor& v);
 };
 
-inline constexpr float kMostGravity = 1000;  // m/s^2, along each axis
+inline constexpr float kMostGravity = 1000;   // m/s^2, along each axis
+inline constexpr size_t kMostAttributes = 4;  // of a world
 
 struct FluidParams {
     std::string method = "pbf";       // a row of methods()
@@ -120,6 +139,7 @@ struct FluidParams {
     CollisionParams collision = {};
     std::vector<BlockParams> blocks = {};
     std::vector<ProbeParams> probes = {};
+    std::vector<AttributeParams> attributes = {};  // kMostAttributes at most
     void visit(ParamVisitor& v);
 };
 

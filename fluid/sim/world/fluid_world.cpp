@@ -12,6 +12,7 @@
 #include "engine/core/param_check.h"
 #include "engine/core/param_fixed.h"
 #include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/attributes.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 
 namespace rivulet {
@@ -34,11 +35,12 @@ const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodie
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
-void FluidWorld::Impl::gatherColours() {
-    if (!coloured) return;
+void FluidWorld::Impl::gatherForDrawing() {
     StepParams all{};
     all.count = particles.count;
-    device->run(gatherAbsorption, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
+    if (coloured) device->run(gatherVectors, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
+    for (size_t k = 0; k < particles.attributes.size(); ++k)
+        device->run(gatherVectors, all, {&particles.id, &particles.attributesOf[k], &particles.attributes[k]}, particles.count);
 }
 
 void FluidWorld::Impl::report(const std::string& sentence) {
@@ -173,16 +175,28 @@ Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {
 Status FluidWorld::setSources(const Sources& next) {
     impl_->change();
     Impl& w = *impl_;
+    if (!next.dry.empty() && w.traits.linked)
+        return badInput("fluid.grid linked_list does not support dry volumes: choose fluid.grid sorted");
+    if (Status s = checkDry(next.dry, w.bodies.states().size()); !s) return s;
+    if (!next.dry.empty())
+        if (Status s = w.dry.prepare(*w.device); !s) return s;
     std::vector<EmitterParams> emitters;
     emitters.reserve(next.emitters.size());
     for (const Emitter& e : next.emitters) emitters.push_back(e.params);
     std::vector<SinkParams> sinks = next.sinks;
-    if (next.emitters.size() != w.sourceSetup.emitters.size() || sinks.size() != w.sourceSetup.sinks.size()) return w.replaceSources(next);
+    if (next.emitters.size() != w.sourceSetup.emitters.size() || sinks.size() != w.sourceSetup.sinks.size()) {
+        if (Status s = w.replaceSources(next); !s) return s;
+        w.setDry(next.dry);
+        return ok();
+    }
     if (Status s = w.sources.set(next); !s) return s;
     for (size_t k = 0; k < emitters.size(); ++k) w.sourceSetup.emitters[k].params = std::move(emitters[k]);
     w.sourceSetup.sinks = std::move(sinks);
+    w.setDry(next.dry);
     return ok();
 }
+
+const std::vector<DryVolume>& FluidWorld::dry() const { return impl_->dry.volumes(); }
 
 Status FluidWorld::Impl::prepareProbes(const FluidParams& next) {
     std::optional<ProbePasses> made;
@@ -232,6 +246,9 @@ ParticleView FluidWorld::particles() const {
     // What fell asleep within the last fixed step is still drawn on its way.
     std::shared_ptr<const void> sleepers = w.sleep ? w.grid->sleepers() : nullptr;
     if (w.params.fixedStep > 0 && sleepers != w.sleepersBefore) sleepers = nullptr;
+    if (sleepers && sleepers == w.painted.of) sleepers = w.painted.shown;
+    std::array<const Buffer*, kMostAttributes> attributes{};
+    for (size_t k = 0; k < w.particles.attributes.size(); ++k) attributes[k] = &w.particles.attributes[k];
     return {.position = &w.particles.positionNext,
             .velocity = &w.particles.velocityNext,
             .id = &w.particles.id,
@@ -240,6 +257,7 @@ ParticleView FluidWorld::particles() const {
             .slots = w.particles.count,
             .absorption = w.coloured ? &w.particles.absorption : nullptr,
             .matterOf = w.traits.matter ? &w.particles.matterOf : nullptr,
+            .attributes = attributes,
             .spacing = w.params.spacing,
             .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
             .viscosity = w.traits.matter ? std::max(w.params.viscosity, w.mostViscous) : w.params.viscosity,
@@ -269,6 +287,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
                                     box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
+    if (Status s = checkAttributes(params); !s) return s.error();
     w.device = &device;
     w.params = params;
     w.sourceSetup = std::move(sources);

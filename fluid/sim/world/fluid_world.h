@@ -85,12 +85,14 @@ class FluidWorld {
     Status setParams(const FluidParams&);
     Status setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces. Error: as create
     void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, one group per force
-    // Sets the emitters and sinks. With as many as before, their shapes and meshes stay; with another number, or none, all emitters begin
-    // anew: particles that were due and waited for room are dropped. Emitters that are added spawn into free slots: give the world some
-    // with fluid.maxParticles or Sources::more. Where their number changes this waits for a GPU. Error (badInput): as setParams; with
-    // fluid.grid linked_list, or in a world that exchanges water, another number; an emitter with a liquid of its own, in a world that
+    // Sets the emitters, sinks and dry volumes. With as many as before, their shapes and meshes stay; with another number, or none, all
+    // emitters begin anew: particles that were due and waited for room are dropped. Emitters that are added spawn into free slots: give the
+    // world some with fluid.maxParticles or Sources::more. Where their number changes this waits for a GPU. Error (badInput): as setParams;
+    // with fluid.grid linked_list, or in a world that exchanges water, another number; an emitter with a liquid of its own, in a world that
     // began with one liquid.
     Status setSources(const Sources& sources);
+
+    const std::vector<DryVolume>& dry() const;  // Sources::dry, where the last step left them
 
     // Walls that are added, moved at once and removed while the world runs: planes, fields, moving solids and surfaces of `solids` in place
     // of those there are; bodies stay, those of `solids` are not read. `poses`: of solids.rigid now; empty: their own, which are those at
@@ -103,6 +105,12 @@ class FluidWorld {
     // memory. Nothing has changed then.
     Status mayChangeWalls() const;  // the first of these
     Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
+
+    // Sets fluid.attributes[attribute] of particles: of those with these ids (ParticleView::id), a value each; or of all that are in a
+    // volume now, whose id is not read. Neither waits. Error (badInput): no such attribute or id; a value or volume that is not finite;
+    // (failed): out of memory. Nothing has changed then.
+    Status setAttribute(size_t attribute, std::span<const uint32_t> ids, std::span<const vec4> values);
+    Status paint(size_t attribute, const Volume& inside, const vec4& value);
 
     // Exchange with other owners of water, such as skins; only if Sources::expectedDeposit is above 0. Places m, velocities m/s. deposit:
     // adds `volume` m^3 at the place. It is pending until it suffices for a particle, which is then spawned above the place. Volume is

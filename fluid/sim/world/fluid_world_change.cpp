@@ -76,6 +76,13 @@ Status FluidWorld::Impl::removeInside() {
     return ok();
 }
 
+void FluidWorld::Impl::setDry(const std::vector<DryParams>& volumes) {
+    if (volumes.empty() && !dry.any()) return;
+    dry.set(volumes, bodies.starts(), bodies.states());
+    hasFree = true;
+    if (sleep) sleep->disturbAll(clock.time);
+}
+
 Status FluidWorld::Impl::replaceSources(const Sources& next) {
     if (traits.linked) return badInput("fluid.grid linked_list does not support emitters and sinks: choose fluid.grid sorted");
     for (size_t k = 0; k < next.emitters.size(); ++k)

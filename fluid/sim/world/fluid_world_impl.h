@@ -18,6 +18,7 @@
 #include "fluid/sim/solids/solid_passes.h"
 #include "fluid/sim/solids/wet_passes.h"
 #include "fluid/sim/sources/block.h"
+#include "fluid/sim/sources/dry_passes.h"
 #include "fluid/sim/sources/exchange_passes.h"
 #include "fluid/sim/sources/source_passes.h"
 #include "fluid/sim/surface/ellipsoids.h"
@@ -61,6 +62,7 @@ struct FluidWorld::Impl {
     SolidPasses solids;
     Sources sourceSetup;  // emitters and sinks
     SourcePasses sources;
+    DryPasses dry;
     ExchangePasses exchange;  // for other owners of water
     uint64_t withdrawn = 0;   // particles removed by them
     // Particles that emitters and sinks spawned and removed before setSources() replaced them.
@@ -83,7 +85,12 @@ struct FluidWorld::Impl {
     ProbeTargets probeTargets;
     std::optional<ProbePasses> probes;  // empty: the scene has none
     Buffer statsRows, corner;
-    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
+    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherVectors, setAttribute, paintAttribute;
+    Buffer attributeIds, attributeValues;  // of setAttribute
+    // Painted since the grid's sleepers were sorted: those that ParticleView shows in place of them.
+    struct {
+        std::shared_ptr<const void> of, shown;
+    } painted;
     PairTraits traits;
     WorldForces forces;
     StepLimits limits;
@@ -111,8 +118,9 @@ struct FluidWorld::Impl {
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
     Status replaceSources(const Sources& next);
-    Status removeInside();   // particles inside a wall
-    Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
+    void setDry(const std::vector<DryParams>& volumes);  // sound ones
+    Status removeInside();                               // particles inside a wall
+    Status mayLink() const;                              // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     Status checkStart() const;
     void fillStart();
@@ -129,7 +137,9 @@ struct FluidWorld::Impl {
     Status findSlots();
     void findLiquids();
     void writeStart();
-    void gatherColours();
+    void writeAttributes();
+    void gatherForDrawing();
+    void attributesChanged();
     Bounds reachable() const;  // m
     StepLimits::Inputs limitInputs() const;
     float fastestFall() const { return limits.fastestFall(limitInputs()); }

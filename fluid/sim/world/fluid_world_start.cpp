@@ -35,6 +35,11 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     traits.sleeps = params.sleep.on;
     traits.asleepRows = traits.sleeps && device->backend() != Backend::cpu;
     traits.follows = sourceSetup.expectedDeposit == 0 && !traits.sleeps;  // deposits come at any place
+    if (Status s = checkDry(sourceSetup.dry, bodies.states().size()); !s) return s;
+    if (!sourceSetup.dry.empty()) {
+        if (Status s = dry.prepare(*device); !s) return s;
+        dry.set(sourceSetup.dry, bodies.starts(), bodies.states());
+    }
     // Before millions of particles are made.
     if (Status s = NeighborGrid::checkCells(Bounds{params.box.min, params.box.max}, h, wanted, traits); !s) return s;
     fillStart();
@@ -57,7 +62,9 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
                             Wanted{&wrap, "fluid/world/wrap", {}, glm::any(traits.periodic)},
                             Wanted{&wrapFromPositions, "fluid/world/wrap", {fromPositions}, glm::any(traits.periodic)},
                             Wanted{&gatherMatter, "fluid/world/gather_matter", {}, traits.matter},
-                            Wanted{&gatherAbsorption, "fluid/world/gather_absorption", {}, coloured}}) {
+                            Wanted{&gatherVectors, "fluid/world/gather_vectors", {}, coloured || !params.attributes.empty()},
+                            Wanted{&setAttribute, "fluid/world/set_attribute", {}, !params.attributes.empty()},
+                            Wanted{&paintAttribute, "fluid/world/paint_attribute", {}, !params.attributes.empty()}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();
@@ -85,7 +92,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
         const vec4 value(params.box.min, 0.0F);
         device->write(corner, std::as_bytes(std::span(&value, 1)));
     }
-    Result<Particles> newParticles = Particles::create(*device, count, traits.matter, coloured);
+    Result<Particles> newParticles = Particles::create(*device, count, traits.matter, coloured, params.attributes.size());
     if (!newParticles) return newParticles.error();
     particles = std::move(*newParticles);
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
@@ -95,7 +102,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     Result<SourcePasses> passes = SourcePasses::create(*device, sourceSetup, params, traits.matter, coloured);
     if (!passes) return passes.error();
     sources = std::move(*passes);
-    hasFree = sources.any();
+    hasFree = sources.any() || dry.any();
     if (sourceSetup.expectedDeposit > 0) {
         Result<ExchangePasses> handed = ExchangePasses::create(*device);
         if (!handed) return handed.error();
@@ -115,6 +122,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     if (count == 0) log.notice("the scene has no particles");
     relaxStart(given);
     if (shortage) return *shortage;
+    if (dry.any()) std::erase_if(start, [&](const NewParticle& p) { return isDry(dry.volumes(), p.position); });
     writeStart();
     return ok();
 }
@@ -129,8 +137,9 @@ Status FluidWorld::Impl::mayLink() const {
         return badInput(
             fmt::format("fluid.grid linked_list is for method {}, not {}: choose that method, or fluid.grid sorted", able, params.method));
     }
-    if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || sourceSetup.expectedDeposit > 0)
-        return badInput("fluid.grid linked_list does not support emitters, sinks and skins: remove them, or choose fluid.grid sorted");
+    if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || !sourceSetup.dry.empty() || sourceSetup.expectedDeposit > 0)
+        return badInput(
+            "fluid.grid linked_list does not support emitters, sinks, dry volumes and skins: remove them, or choose fluid.grid sorted");
     if (params.sleep.on)
         return badInput("fluid.grid linked_list does not support fluid.sleep: set fluid.sleep.on to false, or choose fluid.grid sorted");
     if (params.foam.most > 0)
@@ -225,7 +234,7 @@ void FluidWorld::Impl::fillStart() {
         const float near = p.block == kNoBlock ? 0.0F : 1.0F;
         const bool may = solids.maySpawn(p.position, params.spacing, near) && bodies.maySpawn(p.position, params.spacing, near);
         if (!may && !blockOf(p).cut) ++(p.block == kNoBlock ? leftPlaced : left);
-        return !may;
+        return !may || isDry(dry.volumes(), p.position);
     });
     if (leftPlaced > 0) log.notice(fmt::format("{} of the placed particles are inside a solid: they were left out", leftPlaced));
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
@@ -234,7 +243,8 @@ void FluidWorld::Impl::fillStart() {
 // Whether the liquid has no free surface and gets none by what flows in or out. In a box that is periodic along all axes there may be none.
 bool FluidWorld::Impl::startsClosed() const {
     if (glm::all(traits.periodic)) return true;
-    if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || sourceSetup.expectedDeposit > 0 || start.empty()) return false;
+    if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || dry.any() || sourceSetup.expectedDeposit > 0 || start.empty())
+        return false;
     // Where nothing but liquid fills the box, half of a box has one.
     const vec3 box = params.box.max - params.box.min;
     const double filled = static_cast<double>(start.size()) * std::pow(double{params.spacing}, 3);
@@ -326,7 +336,9 @@ void FluidWorld::Impl::writeStart() {
         device->writeAll<vec4>(particles.matterOf, matterOf);
     }
     if (coloured) device->writeAll<vec4>(particles.absorptionOf, absorptionOf);
+    writeAttributes();
     sources.reset();
+    dry.reset(bodies.states());
     withdrawn = 0;
     before = {};
     if (foam) foam->reset();
@@ -335,7 +347,7 @@ void FluidWorld::Impl::writeStart() {
     if (probes) probes->reset();
     sorted = false;
     invalidateCells();
-    gatherColours();
+    gatherForDrawing();
     if (sleep) sleep->reset(0);
     stepped = 0;
     sleptUnder = vec3(0.0F);

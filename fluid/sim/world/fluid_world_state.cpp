@@ -27,6 +27,7 @@ void FluidWorld::save(WorldState& state) {
     Impl& w = *impl_;
     ASSERT(savable(), "a world whose bodies cannot be saved");
     w.sources.report();
+    w.dry.report();
     w.device->finish();
     w.device->poll();
     state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
@@ -50,7 +51,7 @@ void FluidWorld::save(WorldState& state) {
     if (w.foam) w.foam->save(state);
     if (w.wet) w.wet->save(state);
     if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.withdrawn, 1));
-    if (const uint64_t before[] = {w.before.emitted, w.before.drained}; before[0] + before[1] > 0)
+    if (const uint64_t before[] = {w.before.emitted, w.before.drained + w.dry.removed()}; before[0] + before[1] > 0)
         state.put<uint64_t>("world.sourcesBefore", before);
     w.volumes.save(state);
     w.bodies.save(state);
@@ -152,7 +153,7 @@ Status FluidWorld::restore(WorldState& state) {
     if (startCount) w.startCount = *startCount;
     w.particles.restore(*w.device, *saved);
     if (w.around) w.around->set(saved->position);
-    w.gatherColours();
+    w.gatherForDrawing();
     w.sources.restore(*sources);
     w.withdrawn = taken;
     w.before = {before[0], before[1]};
@@ -261,7 +262,13 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
     const LiquidOf own = liquidOf(w.params, "");
     handOver(w.particles.matterOf, o.particles.matterOf, o.traits.matter, vec4(1.0F, 1.0F, own.viscosity, own.row));
     handOver(w.particles.absorptionOf, o.particles.absorptionOf, o.coloured, own.absorption);
-    w.gatherColours();
+    for (size_t k = 0; k < w.params.attributes.size(); ++k) {
+        const auto same = std::ranges::find(o.params.attributes, w.params.attributes[k].name, &AttributeParams::name);
+        const bool has = same != o.params.attributes.end();
+        const Buffer none, &from = has ? o.particles.attributesOf[same - o.params.attributes.begin()] : none;
+        handOver(w.particles.attributesOf[k], from, has, w.params.attributes[k].value());
+    }
+    w.gatherForDrawing();
     if (w.foam && o.foam) {
         WorldState state;
         o.foam->save(state);

@@ -12,7 +12,7 @@ namespace rivulet {
 void FluidWorld::Impl::fillLedger(FluidStats& f) const {
     const double volume = std::pow(double{params.spacing}, 3);
     f.emitted = (static_cast<double>(startCount) + static_cast<double>(before.emitted + sources.emitted())) * volume;
-    f.drained = static_cast<double>(before.drained + sources.drained()) * volume;
+    f.drained = static_cast<double>(before.drained + sources.drained() + dry.removed()) * volume;
     f.backlog = sources.backlog() * volume;
     f.deposited = static_cast<double>(sources.deposited()) * volume;
     f.pendingVolume = sources.pending() * volume;

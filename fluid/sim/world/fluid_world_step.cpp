@@ -99,7 +99,8 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     if (const std::optional<size_t> body = bodies.misled())
         report(fmt::format("the host's solver gave body {} a state that is not finite: the body keeps its last state", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
-    sources.run({step, params, *grid, particles, solids, bodies, remembered}, clock.time + to * clock.frameLength, dt, last);
+    dry.run(step, grid->cellStart(), particles, bodies.states(), remembered);
+    sources.run({step, params, *grid, particles, solids, bodies, dry.volumes(), remembered}, clock.time + to * clock.frameLength, dt, last);
     if (device->interrupted()) return false;
     if (sleep)
         sleep->run(params, step, glm::length(gravity), *grid, particles, clock.time + to * clock.frameLength,
@@ -254,7 +255,7 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     clock.lastSubsteps = substeps;
     clock.time += simulated;
     if (probes) probes->end(std::shared_ptr<ProbeFrame>(figures, &figures->loads), clock.time, simulated);
-    gatherColours();
+    gatherForDrawing();
     if (simulated > 0) volumes.count(step, particles, clock.time);
     if (shortage) {
         (void)stepper.end(simulated);
@@ -383,6 +384,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
     clock.dtMin = clock.dtMin == 0 ? dt : std::min(clock.dtMin, dt);
     clock.dtMax = std::max(clock.dtMax, dt);
     sources.report();
+    dry.report();
     if (!shortage) gatherStats(substeps, clock.time + begin + dt * done);
     return dt * done;
 }

@@ -14,6 +14,8 @@ HostParticles readParticles(const FluidWorld& world, bool pressures) {
         host.pressure = world.pressures();
         host.pressure.resize(view.slots);
     }
+    for (const Buffer* attribute : view.attributes)
+        if (attribute != nullptr) host.attributes.push_back(device.readAll<vec4>(*attribute, view.slots));
     // Free slots and samples on bodies are no particles.
     size_t kept = 0;
     for (size_t i = 0; i < host.id.size(); ++i) {
@@ -21,11 +23,13 @@ HostParticles readParticles(const FluidWorld& world, bool pressures) {
         host.position[kept] = host.position[i];
         host.velocity[kept] = host.velocity[i];
         if (pressures) host.pressure[kept] = host.pressure[i];
+        for (std::vector<vec4>& attribute : host.attributes) attribute[kept] = attribute[i];
         host.id[kept++] = host.id[i];
     }
     host.position.resize(kept);
     host.velocity.resize(kept);
     host.id.resize(kept);
+    for (std::vector<vec4>& attribute : host.attributes) attribute.resize(kept);
     if (pressures) host.pressure.resize(kept);
     host.mass.assign(kept, view.mass);
     if (view.matterOf != nullptr) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/compute/device.h"
+#include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 
@@ -22,9 +23,11 @@ struct ParticleView {
     // instead of it. Null if all particles are equal.
     const Buffer* absorption = nullptr;
     const Buffer* matterOf = nullptr;  // by id, as Particles::matterOf; null if all particles are equal
-    float spacing = 0;                 // m
-    float mass = 0;                    // kg, of a particle of the world's own liquid
-    float viscosity = 0;               // m^2/s, kinematic, of the most viscous liquid
+    // vec4: the values of FluidParams::attributes, in its order; null beyond them. In the order of `position`, like all others.
+    std::array<const Buffer*, kMostAttributes> attributes = {};
+    float spacing = 0;    // m
+    float mass = 0;       // kg, of a particle of the world's own liquid
+    float viscosity = 0;  // m^2/s, kinematic, of the most viscous liquid
     // Positions at the requested time: with fluid.fixedStep between the last two steps, one step late; otherwise `position`.
     const Buffer* drawn = nullptr;  // vec4: as position
     // The ellipsoids about them: Ellipsoids::buffers(). Null if fluid.ellipsoids is off, and before the first step.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "fluid/sim/sources/liquids.h"
@@ -15,6 +16,7 @@ namespace rivulet {
 namespace {
 
 constexpr const char* kLost = "particles.lost";
+std::string attributeSection(size_t k) { return fmt::format("particles.attribute{}", k); }
 constexpr float kAnywhere = 1.0e12F;                      // m, m/s: bounds of values that every step computes anew
 constexpr float kDenser = 1.0e6F, kMostViscous = 1.0e7F;  // ratio of two rest densities; Pa s: more than params allow
 
@@ -66,11 +68,13 @@ Status checkMotion(const Particles::Saved& saved, const Bounds& inside, const st
 
 }  // namespace
 
-Result<Particles> Particles::create(Device& device, uint32_t count, bool matter, bool absorption) {
+Result<Particles> Particles::create(Device& device, uint32_t count, bool matter, bool absorption, size_t attributes) {
     Particles p;
     p.count = count;
+    p.attributesOf.resize(attributes);
+    p.attributes.resize(attributes);
     const size_t vector = size_t{count} * 16, scalar = size_t{count} * 4;
-    const std::pair<Buffer*, size_t> wanted[] = {
+    std::vector<std::pair<Buffer*, size_t>> wanted = {
         {&p.position, vector},
         {&p.velocity, vector},
         {&p.positionNext, vector},
@@ -86,6 +90,8 @@ Result<Particles> Particles::create(Device& device, uint32_t count, bool matter,
         {&p.absorptionOf, absorption ? vector : 0},
         {&p.absorption, absorption ? vector : 0},
     };
+    for (std::vector<Buffer>* tables : {&p.attributesOf, &p.attributes})
+        for (Buffer& table : *tables) wanted.emplace_back(&table, vector);
     for (auto [buffer, bytes] : wanted) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();
@@ -109,6 +115,7 @@ void Particles::save(Device& device, WorldState& state, const Bounds& inside, ui
     if (!lost.empty()) state.put<uint32_t>(kLost, lost);
     if (matterOf.bytes() > 0) state.put<vec4>("particles.matter", device.readAll<vec4>(matterOf, count));
     if (absorptionOf.bytes() > 0) state.put<vec4>("particles.absorption", device.readAll<vec4>(absorptionOf, count));
+    for (size_t k = 0; k < attributesOf.size(); ++k) state.put<vec4>(attributeSection(k), device.readAll<vec4>(attributesOf[k], count));
 }
 
 Result<Particles::Saved> Particles::take(WorldState& state, const Bounds& inside, std::span<const vec4> samples) const {
@@ -129,6 +136,13 @@ Result<Particles::Saved> Particles::take(WorldState& state, const Bounds& inside
         Result<std::vector<vec4>> taken = state.take<vec4>(name, count);
         if (!taken) return taken.error();
         *values = std::move(*taken);
+    }
+    for (size_t k = 0; k < attributesOf.size() && state.sections().contains(attributeSection(k)); ++k) {
+        Result<std::vector<vec4>> taken = state.take<vec4>(attributeSection(k), count);
+        if (!taken) return taken.error();
+        constexpr float kMost = std::numeric_limits<float>::max();
+        if (Status sound = checkRange(attributeSection(k), *taken, kMost, -kMost, kMost); !sound) return sound.error();
+        saved.attributes.push_back(std::move(*taken));
     }
     Result<std::vector<uint32_t>> ids = state.take<uint32_t>("particles.id", count);
     if (!ids) return ids.error();
@@ -151,6 +165,7 @@ void Particles::restore(Device& device, const Saved& saved) {
     device.writeAll<uint32_t>(id, saved.id);
     if (matterOf.bytes() > 0) device.writeAll<vec4>(matterOf, saved.matter);
     if (absorptionOf.bytes() > 0) device.writeAll<vec4>(absorptionOf, saved.absorption);
+    for (size_t k = 0; k < saved.attributes.size(); ++k) device.writeAll<vec4>(attributesOf[k], saved.attributes[k]);
 }
 
 }  // namespace rivulet

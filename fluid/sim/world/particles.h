@@ -3,6 +3,8 @@
 // What stays with a particle for its life is a table by id, and is gathered into sorted order after each sort.
 #pragma once
 
+#include <vector>
+
 #include "engine/compute/device.h"
 #include "engine/core/math.h"
 #include "fluid/sim/world/world_state.h"
@@ -27,14 +29,18 @@ struct Particles {
     // Where liquids or dyes differ, for drawing; as ParticleView::absorption.
     Buffer absorptionOf;  // by id
     Buffer absorption;    // in the order of the newest state, as of the last frame's end
+    // vec4: the host's, as FluidParams::attributes.
+    std::vector<Buffer> attributesOf;  // by id
+    std::vector<Buffer> attributes;    // as absorption
 
-    // `matter`: whether particles differ; `absorption`: whether they do to the eye.
-    static Result<Particles> create(Device& device, uint32_t count, bool matter = false, bool absorption = false);
+    // `matter`: whether particles differ; `absorption`: whether they do to the eye; `attributes`: how many the host has.
+    static Result<Particles> create(Device& device, uint32_t count, bool matter = false, bool absorption = false, size_t attributes = 0);
 
     // The newest state. Lost particles, and they alone, may be outside `inside` (m) or have values that are not finite: a section names
     // them.
     struct Saved {
         std::vector<vec4> position, velocity, matter, absorption;
+        std::vector<std::vector<vec4>> attributes;  // empty: of a state without them
         std::vector<uint32_t> id;
     };
     void save(Device& device, WorldState& state, const Bounds& inside, uint32_t samples) const;

@@ -22,7 +22,7 @@ struct FluidStats {
     double deposited = 0;       // m^3, of that: particles spawned from deposits
     double pendingVolume = 0;   // m^3, deposited and not yet spawned
     double withdrawn = 0;       // m^3, by others
-    double drained = 0;         // m^3, taken by sinks, and by walls that were added where it was
+    double drained = 0;         // m^3, taken by sinks and dry volumes, and by walls that were added where it was
     double backlog = 0;         // m^3, due from emitters and held back: their opening is blocked, or there is no slot
     double avgCompression = 0;  // mean of max(rho / rho0 - 1, 0) over particles
     double maxCompression = 0;

@@ -190,7 +190,7 @@ std::string fixedValues(const VisitFn& visit) {
 namespace {
 
 // True if `line` is of a parameter that `saved` lacks in a group that it has, or of a group that it lacks in one that it has: a later
-// version added it. The items of a list have numbers as names; they do not count as groups.
+// version added it. The items of a list have numbers as names; they do not count as groups, unless `saved` lacks the list.
 bool isLater(std::string_view line, std::string_view saved) {
     const auto has = [&](std::string_view start) {
         return saved.starts_with(start) || saved.find(fmt::format("\n{}", start)) != std::string_view::npos;
@@ -198,11 +198,15 @@ bool isLater(std::string_view line, std::string_view saved) {
     const std::string_view name = line.substr(0, line.find(" = ") + 3);
     if (has(name)) return false;
     size_t end = name.rfind('.');
-    const bool inGroup = end != std::string_view::npos;
+    const bool inGroup = end != std::string_view::npos || line.ends_with(" items");  // the number of items of a list
     while (end != std::string_view::npos && !has(name.substr(0, end + 1))) {
         const size_t before = end == 0 ? std::string_view::npos : name.rfind('.', end - 1);
         const std::string_view group = name.substr(before + 1, end - before - 1);
-        if (group.empty() || group.find_first_not_of("0123456789") == std::string_view::npos) return false;
+        if (group.empty()) return false;
+        if (group.find_first_not_of("0123456789") == std::string_view::npos) {
+            const std::string_view list = name.substr(0, std::min(before, name.size()));
+            if (before == std::string_view::npos || has(fmt::format("{}.", list)) || has(fmt::format("{} = ", list))) return false;
+        }
         end = before;
     }
     return inGroup;

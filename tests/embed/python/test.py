@@ -94,6 +94,24 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     refused(lambda: context.world(open_box, particles=places + [0, 0, 0.5]), "outside fluid.box", "enlarge")
     refused(lambda: context.world({"fluid": {**open_box["fluid"], "maxParticles": 100}}, particles=places), "fluid.maxParticles is 100", "512")
 
+    # Attributes: set by id and in a volume, and carried along.
+    tagged = {"fluid": {**open_box["fluid"], "attributes": [{"name": "dye", "w": 1}, {"name": "origin"}]}}
+    with context.world(tagged, particles=places, velocities=turning) as world:
+        first, start = world.particles(), world.attributes()
+        assert (start["dye"] == [0, 0, 0, 1]).all() and (start["origin"] == 0).all() and len(start["dye"]) == 512
+        world.set_attribute("origin", first.ids, np.hstack([first.positions, np.ones((512, 1))]))
+        world.paint("dye", rivulet.Sphere(0, (0.5, 0.5, 0.5), 0.12), (1, 0, 0, 0))
+        for _ in range(10):
+            world.step(1 / 60)
+        now, values = world.particles(), world.attributes()
+        came = {i: place for i, place in zip(first.ids, first.positions)}
+        assert all((came[i] == origin[:3]).all() for i, origin in zip(now.ids, values["origin"]))
+        red = values["dye"][:, 0] == 1
+        assert 20 < red.sum() < 200 and (red == (((values["origin"][:, :3] - 0.5) ** 2).sum(axis=1) <= 0.12**2)).all()
+        refused(lambda: world.paint("team", rivulet.Sphere(0, (0, 0, 0), 1), (1, 0, 0, 0)), "'team' is no attribute", "dye, origin")
+        refused(lambda: world.set_attribute("dye", [0, 1], [[0, 0, 0, 0]]), "1 values", "2 particles")
+        refused(lambda: world.set_attribute("dye", [9999], [[0, 0, 0, 0]]), "ids[0] is 9999")
+
     # A pool at rest: what is asked of it is what is known of it.
     calm = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1, 1]}, "blocks": [{"max": [1, 0.5, 1]}],
                       "probes": [{"name": "floor", "face": "-y"}, {"name": "wall", "face": "+x"}]}}

@@ -1,0 +1,72 @@
+#include "fluid/sim/sources/dry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/quaternion.hpp>
+
+#include "engine/core/param_check.h"
+#include "engine/core/param_path.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr float kLeast = 1.0e-6F;  // m
+
+Pose poseOf(const DryParams& p) {
+    const vec3 angles = glm::radians(p.rotation);
+    return {p.position,
+            glm::angleAxis(angles.z, vec3(0, 0, 1)) * glm::angleAxis(angles.y, vec3(0, 1, 0)) * glm::angleAxis(angles.x, vec3(1, 0, 0))};
+}
+
+}  // namespace
+
+void DryParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> shapes = {"box", "ellipsoid"};
+    v.choice({.name = "shape", .doc = "shape of the volume that stays dry"}, shape, shapes);
+    v.value({"position", "m", "centre of the volume; with a body, at t = 0", -kMaxPosition, kMaxPosition}, position);
+    v.value({"rotation", "deg", "rotation about x, then y, then z; with a body, at t = 0", -360, 360}, rotation);
+    v.value({"size", "m", "edge lengths of a box, or axes of an ellipsoid; each above 0", 0, kMaxPosition}, size);
+    v.value({"body", "", "index of the body that it moves with; -1 = none", -1, 1.0e6}, body);
+}
+
+Status checkDry(std::span<const DryParams> volumes, size_t bodies) {
+    if (volumes.size() > kMostDry)
+        return badInput(fmt::format("{} volumes stay dry, and {} are possible: join some", volumes.size(), kMostDry));
+    for (size_t k = 0; k < volumes.size(); ++k) {
+        const DryParams& d = volumes[k];
+        if (Status s = checkParams(pathOf("dry", k), d); !s) return s;
+        if (!glm::all(glm::greaterThan(d.size, vec3(kLeast))))
+            return badInput(fmt::format("dry[{}].size is ({}, {}, {}) m: give three lengths above 0", k, d.size.x, d.size.y, d.size.z));
+        if (d.body >= 0 && static_cast<size_t>(d.body) >= bodies)
+            return badInput(fmt::format("dry[{}].body is {}, and there are {} bodies: use the index of one, or -1", k, d.body, bodies));
+    }
+    return ok();
+}
+
+std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, std::span<const Pose> starts, std::span<const BodyState> bodies) {
+    std::vector<DryVolume> placed;
+    placed.reserve(volumes.size());
+    for (const DryParams& d : volumes) {
+        Pose pose = poseOf(d);
+        if (d.body >= 0) {
+            const auto k = static_cast<size_t>(d.body);
+            const Pose &start = starts[k], &now = bodies[k].pose;
+            pose = {now.toWorld(start.toOwn(pose.position)), glm::normalize(now.rotation * glm::conjugate(start.rotation) * pose.rotation)};
+        }
+        placed.push_back({vec4(pose.position, d.shape == "box" ? 0.0F : 1.0F), vec4(0.5F * d.size, 0.0F),
+                          vec4(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w)});
+    }
+    return placed;
+}
+
+bool isDry(std::span<const DryVolume> volumes, const vec3& place) {
+    return std::ranges::any_of(volumes, [&](const DryVolume& v) {
+        const Pose pose{vec3(v.centre), quat(v.turn.w, v.turn.x, v.turn.y, v.turn.z)};
+        const vec3 own = pose.toOwn(place) / vec3(v.reach), squares = own * own;
+        return (v.centre.w == 0.0F ? std::max({squares.x, squares.y, squares.z}) : squares.x + squares.y + squares.z) <= 1.0F;
+    });
+}
+
+}  // namespace rivulet

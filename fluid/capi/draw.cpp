@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
@@ -89,6 +90,34 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         return world->context->water->draw(*world->context->hostGl, draw->view, *fluid, draw->look, draw->target, draw->row);
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
+    return status;
+}
+
+rivulet_status rivulet_context_set_surroundings(rivulet_context* context, const rivulet_surroundings* surroundings, rivulet_error* why) {
+    const rivulet_status status = guarded(why, [&]() -> Status {
+        if (context == nullptr) return badInput("context is NULL");
+        if (Status there = drawable(*context); !there) return there;
+        if (Status can = ready(*context, Needs::drawing); !can) return can;
+        if (surroundings == nullptr) return badInput("surroundings is NULL");
+        const Result<rivulet_surroundings> given = readStruct(surroundings, "rivulet_surroundings", "surroundings");
+        if (!given) return given.error();
+        HostSurroundings from{.texture = given->texture};
+        HdrImage image;
+        if (given->pixels != nullptr) {
+            constexpr int32_t kLargest = 1 << 15;  // texels
+            if (given->width < 1 || given->height < 1 || given->width > kLargest || given->height > kLargest)
+                return badInput(
+                    fmt::format("surroundings.pixels are {} x {}: give 1 to {} each way", given->width, given->height, kLargest));
+            image = {.name = "surroundings", .width = given->width, .height = given->height, .texels = {}};
+            image.texels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+            std::memcpy(image.texels.data(), given->pixels, image.texels.size() * sizeof(vec3));
+            from.image = &image;
+        }
+        if (given->turn != nullptr) std::memcpy(&from.turn[0][0], given->turn, sizeof from.turn);
+        const CallScope scope(*context, Needs::drawing);
+        return context->water->setSurroundings(*context->hostGl, from);
+    });
+    if (context != nullptr) context->hostLog.deliver(context->callback);
     return status;
 }
 

@@ -38,6 +38,24 @@ typedef struct rivulet_target {
 RIVULET_API rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view, const rivulet_target* target,
                                               rivulet_error* why);
 
+/* What the water reflects beside the picture itself: an image or a texture of the host, linear radiance in the target's units. */
+typedef struct rivulet_surroundings {
+    size_t size;
+    /* Three floats each, red, green, blue: an equirectangular map, the bottom row (-y) first, -z in the middle, +x right of it. NULL:
+     * texture */
+    const float* pixels;
+    int32_t width, height; /* of pixels */
+    /* GL name of a GL_TEXTURE_2D that has the same layout, or of a GL_TEXTURE_CUBE_MAP, in a format that is read as floats. Level 0 is read
+       in this call; call again when it has changed. 0: pixels */
+    uint32_t texture;
+    /* 9 floats, column by column: a direction in the world, +Y up, into one of the map: a rotation, which may mirror. NULL: none */
+    const float* turn;
+} rivulet_surroundings;
+/* Replaces the sky of rivulet_context_options. Costs 10 small draws and waits for nothing: it may be called in each frame. On an error the
+   surroundings before stay. */
+RIVULET_API rivulet_status rivulet_context_set_surroundings(rivulet_context* context, const rivulet_surroundings* surroundings,
+                                                            rivulet_error* why);
+
 /* The particles as OpenGL buffers, for a host that draws them. With fluid.fixedStep, positions are interpolated between two steps. Valid
    until the world's next step. */
 typedef struct rivulet_buffers {

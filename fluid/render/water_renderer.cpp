@@ -1,9 +1,13 @@
 #include "fluid/render/water_renderer.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "engine/core/readable_bytes.h"
 #include "engine/gpu/host_state.h"
@@ -11,6 +15,7 @@
 #include "engine/render/environment_map.h"
 #include "engine/render/frame_params.h"
 #include "fluid/render/host_picture.h"
+#include "fluid/render/host_surroundings.h"
 #include "fluid/render/look_params.h"
 #include "fluid/render/renderers.h"
 
@@ -23,16 +28,29 @@ struct WaterRenderer::Impl {
     gpu::Buffer frame, coarse;
     gpu::Texture nothing, surroundings;
     std::array<vec4, 9> matte{};
-    size_t most = SIZE_MAX;  // bytes of pictures
+    std::optional<SurroundingsMap> hosts;  // instead of `surroundings` and `matte`
+    size_t most = SIZE_MAX;                // bytes of pictures
 
-    size_t ownBytes() const { return surroundings.desc().bytes() + nothing.desc().bytes(); }
+    size_t ownBytes() const { return surroundings.desc().bytes() + nothing.desc().bytes() + (hosts ? hosts->bytes() : 0); }
     Status create(const WaterRendererOptions& options);
+    Status setSurroundings(const HostSurroundings& from);
     Status draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row);
 };
 
-Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
+namespace {
+
+constexpr unsigned kSurroundingsUnit = 16;  // beyond those that the graph empties before each pass
+
+ShaderFiles shaderFiles() {
     ShaderFiles files = ShaderFiles::developer();
     files.define({"ENVIRONMENT_MAP", "1"});
+    return files;
+}
+
+}  // namespace
+
+Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
+    const ShaderFiles files = shaderFiles();
     const DiskCache cache(cacheFolder("surroundings"), options.log);
     const Environment filtered =
         options.surroundings != nullptr ? cachedEnvironment(*options.surroundings, cache) : cachedEnvironment(options.sky, cache);
@@ -62,6 +80,16 @@ Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
     return ok();
 }
 
+Status WaterRenderer::Impl::setSurroundings(const HostSurroundings& from) {
+    const size_t left = most - std::min(most, ownBytes());
+    if (hosts) return hosts->take(from, left);
+    Result<SurroundingsMap> made = SurroundingsMap::create(shaderFiles());
+    if (!made) return made.error();
+    if (Status taken = made->take(from, left); !taken) return taken;
+    hosts = std::move(*made);
+    return ok();
+}
+
 Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row) {
     const FrameView& view = picture.view();
     fluid.kept.limit(most - std::min(most, ownBytes() + picture.bytes() + pool.bytes()));
@@ -79,7 +107,11 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
         const FrameParams half = packed(view.half());
         coarse.write(std::as_bytes(std::span(&half, 1)));
     }
-    surroundings.bind(16);  // beyond those that the graph empties before each pass
+    if (hosts)
+        for (const gpu::Buffer* block : {&frame, &coarse})
+            glCopyNamedBufferSubData(hosts->matte().name(), block->name(), 0, offsetof(FrameParams, matteLight),
+                                     static_cast<GLsizeiptr>(hosts->matte().bytes()));
+    (hosts ? hosts->map() : surroundings).bind(kSurroundingsUnit);
 
     gpu::FrameGraph graph(pool);
     const gpu::TextureHandle none = graph.importTexture("nothing", nothing);
@@ -164,6 +196,15 @@ Status WaterRenderer::draw(const gpu::HostState& scope, const FrameView& view, c
         drawn = impl_->draw(fluid, look, by);
     }
     return drawn;
+}
+
+Status WaterRenderer::setSurroundings(const HostSurroundings& surroundings) {
+    const gpu::HostState scope;
+    return setSurroundings(scope, surroundings);
+}
+
+Status WaterRenderer::setSurroundings(const gpu::HostState&, const HostSurroundings& surroundings) {
+    return impl_->setSurroundings(surroundings);
 }
 
 const std::vector<PassTime>& WaterRenderer::times() const { return impl_->pool.times(); }

@@ -18,6 +18,7 @@
 #include "engine/render/made_sky.h"
 #include "fluid/render/fluid_look.h"
 #include "fluid/render/fluid_view.h"
+#include "fluid/render/host_lighting.h"
 #include "fluid/render/host_target.h"
 
 namespace rivulet {
@@ -55,6 +56,12 @@ class WaterRenderer {
     // The same within a scope of HostState that the host holds, around several calls: state is saved once.
     Status draw(const gpu::HostState& scope, const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
                 const RendererRow* row = nullptr);
+
+    // Replaces what the water reflects beside the picture itself. Costs 10 small draws and waits for nothing, so that a host may call it in
+    // each frame while its sky changes. Error (badInput): none or two are given, a value of the image is negative or not finite, the
+    // texture is of another kind, the turn is no rotation; (failed): out of memory. Then the ones before stay.
+    Status setSurroundings(const HostSurroundings& surroundings);
+    Status setSurroundings(const gpu::HostState& scope, const HostSurroundings& surroundings);
 
     const std::vector<PassTime>& times() const;  // GPU ms a pass, two or three frames late
     size_t bytes() const;                        // of its textures

@@ -183,6 +183,18 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
         const Status drawn = (*renderer)->draw(host.view(), testing::viewOf(*world), {}, host.target());
         ASSERT_TRUE(drawn) << drawn.error().message;
         EXPECT_EQ(difference(before, glSnapshot()), "") << "draw()";
+        // With a host's surroundings.
+        GLuint cube = 0;
+        glCreateTextures(GL_TEXTURE_CUBE_MAP, 1, &cube);
+        glTextureStorage2D(cube, 1, GL_RGBA16F, 4, 4);
+        const HdrImage grey{.name = "grey", .width = 2, .height = 1, .texels = {vec3(0.5F), vec3(0.5F)}};
+        for (const HostSurroundings& around : {HostSurroundings{.image = &grey}, HostSurroundings{.texture = cube}}) {
+            const Status set = (*renderer)->setSurroundings(around);
+            ASSERT_TRUE(set) << set.error().message;
+            EXPECT_EQ(difference(before, glSnapshot()), "") << "setSurroundings()";
+        }
+        ASSERT_TRUE((*renderer)->draw(host.view(), testing::viewOf(*world), {}, host.target()));
+        EXPECT_EQ(difference(before, glSnapshot()), "") << "draw() with a host's surroundings";
         for (const char* name : {"points", "reference"}) {
             const RendererRow* row = renderers().find(name);
             ASSERT_TRUE((*renderer)->draw(host.view(), testing::viewOf(*world), {}, host.target(), row));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
@@ -16,6 +17,49 @@ Status drawable(const rivulet_context& context) {
     if (context.water) return stillThere(context, Needs::drawing);
     return badInput("the context has no OpenGL: set rivulet_context_options.find");
 }
+
+namespace {
+
+// Values are checked by WaterRenderer::draw.
+Status setLighting(const rivulet_lighting* lighting, WaterDraw& draw) {
+    const Result<rivulet_lighting> l = readStruct(lighting, "rivulet_lighting", "view.lighting");
+    if (!l) return l.error();
+    if (l->lights == nullptr && l->lights_count > 0)
+        return badInput(fmt::format("lighting.lights is NULL, and lights_count is {}", l->lights_count));
+    if (l->lights_count > kMostHostLights)
+        return badInput(fmt::format("lighting.lights_count is {}: give {} at most, the brightest", l->lights_count, kMostHostLights));
+    draw.lights.reserve(l->lights_count);
+    for (const rivulet_light& light : std::span(l->lights, l->lights_count)) {
+        if (!areWithin(light.direction, kBrightest) || !areWithin(light.colour, kBrightest))
+            return badInput(fmt::format("lighting.lights: a direction or colour is not finite, or beyond {}", kBrightest));
+        draw.lights.push_back({vectorOf(light.direction), vectorOf(light.colour)});
+    }
+    const Result<rivulet_shadow> shadow = readStruct(l->shadow, "rivulet_shadow", "lighting.shadow");
+    if (!shadow) return shadow.error();
+    if (l->shadow != nullptr) {
+        if (shadow->texture == 0 || shadow->projection == nullptr)
+            return badInput("lighting.shadow has no texture or no projection: give both, or set lighting.shadow to NULL");
+        draw.shadow = {.texture = shadow->texture,
+                       .projection = matrixOf(shadow->projection),
+                       .zeroToOne = shadow->zero_to_one != 0,
+                       .reversed = shadow->reversed != 0,
+                       .bias = shadow->bias};
+    }
+    const Result<rivulet_fog> fog = readStruct(l->fog, "rivulet_fog", "lighting.fog");
+    if (!fog) return fog.error();
+    if (fog->kind < RIVULET_NO_FOG || fog->kind > RIVULET_LINEAR_FOG)
+        return badInput(fmt::format("lighting.fog.kind is {}: use a rivulet_fog_kind, 0 to 3", fog->kind));
+    draw.fog = {.kind = static_cast<HostFog::Kind>(fog->kind),
+                .colour = vectorOf(fog->colour),
+                .density = fog->density,
+                .start = fog->start,
+                .end = fog->end,
+                .alongView = fog->along_view != 0,
+                .display = fog->display != 0};
+    return ok();
+}
+
+}  // namespace
 
 Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
                             const rivulet_target* target) {
@@ -52,6 +96,7 @@ Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& li
                    .width = t.width,
                    .height = t.height,
                    .colours = static_cast<HostTarget::Colours>(t.colours)};
+    if (Status lit = setLighting(v.lighting, draw); !lit) return lit.error();
     return draw;
 }
 
@@ -87,7 +132,8 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         const CallScope scope(*world->context, Needs::drawing);
         const Result<FluidView> fluid = world->upload.view(*world->world, world->params.look, world->fallingDrops, world->hangingDrops);
         if (!fluid) return fluid.error();
-        return world->context->water->draw(*world->context->hostGl, draw->view, *fluid, draw->look, draw->target, draw->row);
+        return world->context->water->draw(*world->context->hostGl, draw->view, *fluid, draw->look, draw->target, draw->row,
+                                           draw->lighting());
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
     return status;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/core/result.h"
 #include "fluid/capi/handles.h"
+#include "fluid/render/host_lighting.h"
 #include "fluid/render/host_target.h"
 #include "fluid/render/renderers.h"
 
@@ -19,6 +21,10 @@ struct WaterDraw {
     FluidLook look;
     HostTarget target;
     const RendererRow* row = nullptr;
+    std::vector<HostLight> lights = {};
+    HostShadow shadow = {};
+    HostFog fog = {};
+    HostLighting lighting() const { return {lights, shadow, fog}; }
 };
 // Error (badInput): a value of the view or the target.
 Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,

@@ -9,6 +9,51 @@
 extern "C" {
 #endif
 
+/* A light besides the view's, far away. */
+typedef struct rivulet_light {
+    float direction[3]; /* towards the light, any length but 0; +Y is up */
+    float colour[3];    /* radiance in the target's units */
+} rivulet_light;
+
+/* Where the view's light is shaded: the host's shadow map. Beyond it all is lit. */
+typedef struct rivulet_shadow {
+    size_t size;
+    /* GL name of a GL_TEXTURE_2D of depths, or of one red channel of floats. Its sampling is not used. The layer of an array can be given
+       as a texture view (glTextureView). */
+    uint32_t texture;
+    const float* projection; /* 16 floats: the world that the view transforms -> the map's clip space */
+    uint32_t zero_to_one;    /* 1: the map was drawn with GL_ZERO_TO_ONE; 0: clip depths are -1 to 1 */
+    uint32_t reversed;       /* 1: what is nearer to the light has the greater depth */
+    float bias;              /* of stored depth, 0 to 1: what is deeper by less is lit; 0.002 suits 24 bits */
+} rivulet_shadow;
+
+/* The share of light that passes a distance d. */
+typedef enum rivulet_fog_kind {
+    RIVULET_NO_FOG = 0,
+    RIVULET_EXPONENTIAL = 1,         /* exp(-density d) */
+    RIVULET_EXPONENTIAL_SQUARED = 2, /* exp(-(density d)^2) */
+    RIVULET_LINEAR_FOG = 3           /* (end - d) / (end - start), 0 to 1 */
+} rivulet_fog_kind;
+
+/* The fog that the host's picture already contains: the water is seen through it too. */
+typedef struct rivulet_fog {
+    size_t size;
+    int32_t kind;        /* a rivulet_fog_kind */
+    float colour[3];     /* radiance in the target's units; with display: display values, sRGB */
+    float density;       /* 1 / the unit of the view's world */
+    float start, end;    /* in that unit */
+    uint32_t along_view; /* 1: d is the depth along the view axis; 0: the distance from the eye */
+    uint32_t display;    /* 1: the host mixes display values; 0: linear ones */
+} rivulet_fog;
+
+typedef struct rivulet_lighting {
+    size_t size;
+    const rivulet_light* lights; /* up to 7 */
+    size_t lights_count;
+    const rivulet_shadow* shadow; /* NULL: none */
+    const rivulet_fog* fog;       /* NULL: none */
+} rivulet_lighting;
+
 typedef struct rivulet_view {
     size_t size;
     const float* view;           /* world -> view: right- or left-handed, mirrored or not */
@@ -18,6 +63,7 @@ typedef struct rivulet_view {
     float light_direction[3];    /* towards the light; all 0: (0.4, 0.8, 0.45) */
     float light_colour[3];       /* radiance in the target's units; all 0: 1 */
     float units_per_metre;       /* of the world that `view` transforms, and of the planes: 100 for centimetres; 0: 1 */
+    const rivulet_lighting* lighting; /* NULL: the light above alone */
 } rivulet_view;
 
 typedef enum rivulet_colours {

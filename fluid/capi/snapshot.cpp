@@ -146,7 +146,7 @@ rivulet_status rivulet_snapshot_draw(rivulet_snapshot* snapshot, const rivulet_v
         const gpu::HostState keep(savesOf(*snapshot->context));
         const Result<FluidView> fluid = snapshot->upload.view(snapshot->taken, snapshot->look);
         if (!fluid) return fluid.error();
-        return snapshot->context->water->draw(keep, draw->view, *fluid, draw->look, draw->target, draw->row);
+        return snapshot->context->water->draw(keep, draw->view, *fluid, draw->look, draw->target, draw->row, draw->lighting());
     });
 }
 

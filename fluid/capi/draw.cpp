@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
@@ -97,7 +98,21 @@ Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& li
                    .height = t.height,
                    .colours = static_cast<HostTarget::Colours>(t.colours)};
     if (Status lit = setLighting(v.lighting, draw); !lit) return lit.error();
+    const Result<rivulet_renderer> own = readStruct(v.renderer, "rivulet_renderer", "view.renderer");
+    if (!own) return own.error();
+    if (v.renderer != nullptr) {
+        Result<HostRenderer> renderer = HostRenderer::of(*own, *draw.row);
+        if (!renderer) return renderer.error();
+        draw.renderer = std::move(*renderer);
+    }
     return draw;
+}
+
+Status drawWater(WaterRenderer& water, const gpu::HostState& scope, const FluidView& fluid, WaterDraw& draw) {
+    if (!draw.renderer) return water.draw(scope, draw.view, fluid, draw.look, draw.target, draw.row, draw.lighting());
+    const RendererRow row = draw.renderer->row();
+    if (Status drawn = water.draw(scope, draw.view, fluid, draw.look, draw.target, &row, draw.lighting()); !drawn) return drawn;
+    return draw.renderer->outcome();
 }
 
 FluidLookParams plainLook(FluidLookParams look) {
@@ -127,13 +142,12 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (world == nullptr) return badInput("world is NULL");
         if (Status there = drawable(*world->context); !there) return there;
         if (Status can = ready(*world->context, Needs::drawing); !can) return can;
-        const Result<WaterDraw> draw = waterDraw(world->params.look, world->params.fluid.liquid, view, target);
+        Result<WaterDraw> draw = waterDraw(world->params.look, world->params.fluid.liquid, view, target);
         if (!draw) return draw.error();
         const CallScope scope(*world->context, Needs::drawing);
         const Result<FluidView> fluid = world->upload.view(*world->world, world->params.look, world->fallingDrops, world->hangingDrops);
         if (!fluid) return fluid.error();
-        return world->context->water->draw(*world->context->hostGl, draw->view, *fluid, draw->look, draw->target, draw->row,
-                                           draw->lighting());
+        return drawWater(*world->context->water, *world->context->hostGl, *fluid, *draw);
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
     return status;

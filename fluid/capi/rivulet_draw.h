@@ -54,6 +54,48 @@ typedef struct rivulet_lighting {
     const rivulet_fog* fog;       /* NULL: none */
 } rivulet_lighting;
 
+/* The particles as OpenGL buffers, for a host that draws them. With fluid.fixedStep, positions are interpolated between two steps. Valid
+   until the world's next step. */
+typedef struct rivulet_buffers {
+    size_t size;
+    uint32_t position;  /* GL name; vec4 each: xyz m, w density over rest density; negative w: the row is empty */
+    uint32_t velocity;  /* GL name; vec4 each: xyz m/s */
+    uint32_t id;        /* GL name; uint each */
+    uint32_t count;     /* rows */
+    float radius;       /* m, of a drawn sphere */
+    uint32_t wet_cells; /* GL name; int each: see rivulet_world_wet_solid. 0 without fluid.wetness.on */
+    uint32_t wetness;   /* GL name; float each: 0 dry .. 1 wet. Another buffer after each step */
+} rivulet_buffers;
+
+/* What a host's own renderer draws with, by OpenGL. */
+typedef struct rivulet_drawing {
+    size_t size;
+    const rivulet_buffers* particles; /* velocity: with look.colourBy normal or surface, normals */
+    /* The view of rivulet_world_draw in one convention: metres, right-handed, -z ahead, not mirrored, clip depth -1 to 1. Column by column.
+     */
+    float view[16], projection[16];
+    float near_plane, far_plane; /* m */
+    int32_t width, height;       /* pixels */
+    /* GL name, bound, its viewport set: a colour of floats, linear radiance, and a depth of floats, both with the scene drawn so far; the
+       state is otherwise OpenGL's default, and may be left in any state. */
+    uint32_t framebuffer;
+} rivulet_drawing;
+
+typedef enum rivulet_stage {
+    RIVULET_INSTEAD = 0, /* of the renderer of the world's look; foam and drops are drawn after it */
+    RIVULET_AFTER = 1    /* after it: the depth has the water's surface in it, and what is drawn leaves the target's depth as it is */
+} rivulet_stage;
+
+/* A host's own renderer of a world's particles. */
+typedef struct rivulet_renderer {
+    size_t size;
+    int32_t stage; /* a rivulet_stage */
+    /* Called once in a draw, where the world has water, on the thread of the call. It must not call the library, and returns; if it throws
+       an exception, the draw fails. */
+    void (*draw)(void* user, const rivulet_drawing* drawing);
+    void* user;
+} rivulet_renderer;
+
 typedef struct rivulet_view {
     size_t size;
     const float* view;           /* world -> view: right- or left-handed, mirrored or not */
@@ -64,6 +106,7 @@ typedef struct rivulet_view {
     float light_colour[3];       /* radiance in the target's units; all 0: 1 */
     float units_per_metre;       /* of the world that `view` transforms, and of the planes: 100 for centimetres; 0: 1 */
     const rivulet_lighting* lighting; /* NULL: the light above alone */
+    const rivulet_renderer* renderer; /* NULL: that of the world's look */
 } rivulet_view;
 
 typedef enum rivulet_colours {
@@ -102,18 +145,6 @@ typedef struct rivulet_surroundings {
 RIVULET_API rivulet_status rivulet_context_set_surroundings(rivulet_context* context, const rivulet_surroundings* surroundings,
                                                             rivulet_error* why);
 
-/* The particles as OpenGL buffers, for a host that draws them. With fluid.fixedStep, positions are interpolated between two steps. Valid
-   until the world's next step. */
-typedef struct rivulet_buffers {
-    size_t size;
-    uint32_t position;  /* GL name; vec4 each: xyz m, w density over rest density; negative w: the row is empty */
-    uint32_t velocity;  /* GL name; vec4 each: xyz m/s */
-    uint32_t id;        /* GL name; uint each */
-    uint32_t count;     /* rows */
-    float radius;       /* m, of a drawn sphere */
-    uint32_t wet_cells; /* GL name; int each: see rivulet_world_wet_solid. 0 without fluid.wetness.on */
-    uint32_t wetness;   /* GL name; float each: 0 dry .. 1 wet. Another buffer after each step */
-} rivulet_buffers;
 RIVULET_API rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buffers, rivulet_error* why);
 
 /* For a host's own material: where the wetness of a wall or body is in the two buffers. shaders/material/wet.glsl reads them: wet_cells at

@@ -126,6 +126,7 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
     d.view = view;
     d.fluid = fluidView;
     d.look = look;
+    d.user = row.user;
     if (look.fast) d.fluid.ellipsoids = {};
     d.frame = graph.importBuffer("frame", frame.name(), frame.bytes());
     if (look.fast) d.coarse = graph.importBuffer("coarse frame", coarse.name(), coarse.bytes());

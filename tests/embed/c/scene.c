@@ -1,4 +1,5 @@
-/* rivulet.h in a host's light: surroundings, several lights, a shadow map and fog. Exit 77: no OpenGL. */
+/* rivulet.h in a host's scene: surroundings, several lights, a shadow map, fog, and a renderer of its own. Exit 77: no OpenGL. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "check.h"
@@ -8,6 +9,7 @@ enum { WIDTH = 96, HEIGHT = 72, BYTES = 4 * WIDTH * HEIGHT };
 
 static rivulet_error why;
 static rivulet_world* world;
+static rivulet_snapshot* snapshot;
 static rivulet_view from;
 static rivulet_target to;
 
@@ -129,6 +131,123 @@ static void thick_fog_is_all_that_is_seen(unsigned char* a) {
     refuses(&lighting, "give 0 or more");
 }
 
+/* A host's renderer: a green plane across the view, or green points at the particles. */
+typedef struct painter {
+    int calls;
+    float metres; /* of the plane before the eye; 0: points */
+    GLuint plane, points, array;
+} painter;
+
+static GLuint program_of(const char* vertex) {
+    const char* texts[2] = {vertex, "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(0, 1, 0, 1); }"};
+    const GLuint program = glCreateProgram();
+    for (int k = 0; k < 2; ++k) {
+        const GLuint shader = glCreateShader(k == 0 ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER);
+        glShaderSource(shader, 1, &texts[k], NULL);
+        glCompileShader(shader);
+        glAttachShader(program, shader);
+        glDeleteShader(shader);
+    }
+    glLinkProgram(program);
+    return program;
+}
+
+static void paint(void* user, const rivulet_drawing* drawing) {
+    painter* p = user;
+    ++p->calls;
+    GLint bound = 0, viewport[4] = {0};
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    glGetIntegerv(GL_VIEWPORT, viewport);
+    CHECK((GLuint)bound == drawing->framebuffer && viewport[2] == WIDTH && viewport[3] == HEIGHT);
+    CHECK(drawing->width == WIDTH && drawing->height == HEIGHT && !glIsEnabled(GL_DEPTH_TEST) && !glIsEnabled(GL_BLEND));
+    glBindVertexArray(p->array);
+    glEnable(GL_DEPTH_TEST);
+    if (p->metres > 0) {
+        const float z = (drawing->projection[14] - drawing->projection[10] * p->metres) / p->metres;
+        glUseProgram(p->plane);
+        glUniform1f(0, z);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    } else {
+        glUseProgram(p->points);
+        glUniformMatrix4fv(0, 1, GL_FALSE, drawing->view);
+        glUniformMatrix4fv(1, 1, GL_FALSE, drawing->projection);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, drawing->particles->position);
+        glPointSize(4);
+        glDrawArrays(GL_POINTS, 0, (GLsizei)drawing->particles->count);
+    }
+    /* Any state may be left. */
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ZERO, GL_ZERO);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glViewport(1, 2, 3, 4);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+static int is_green(const unsigned char* p) { return p[0] == 0 && p[1] == 255 && p[2] == 0; }
+
+static void a_hosts_renderer_draws(unsigned char* a, unsigned char* b) {
+    painter p = {.plane = program_of("#version 450\nlayout(location = 0) uniform float z;"
+                                     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, z, 1); }"),
+                 .points = program_of("#version 450\nlayout(location = 0) uniform mat4 view; layout(location = 1) uniform mat4 projection;"
+                                      "layout(std430, binding = 0) readonly buffer At { vec4 at[]; };"
+                                      "void main() { vec4 p = at[gl_VertexID];"
+                                      "gl_Position = p.w < 0 ? vec4(2, 2, 2, 1) : projection * view * vec4(p.xyz, 1); }")};
+    glGenVertexArrays(1, &p.array);
+    rivulet_renderer renderer = {.size = sizeof renderer, .stage = RIVULET_INSTEAD, .draw = paint, .user = &p};
+    picture(a, NULL); /* Rivulet's own */
+    from.renderer = &renderer;
+    /* Its points are where the block is, which is 1 m wide and 3 to 4 m away: two pixels around it are a point's size. */
+    picture(b, NULL);
+    CHECK(p.calls == 1);
+    GLint bound = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    CHECK((uint32_t)bound == to.framebuffer && !glIsEnabled(GL_BLEND));
+    const double metre = 0.5 * HEIGHT * 2.41421356 / 3;
+    int green = 0;
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int x = 0; x < WIDTH; ++x) {
+            const unsigned char* pixel = b + 4 * (y * WIDTH + x);
+            if (!is_water(pixel)) continue;
+            CHECK(is_green(pixel));
+            CHECK(fabs(x - 0.5 * WIDTH) < 0.5 * metre + 3 && y > 0.5 * HEIGHT - 0.3 * metre - 3 && y < 0.5 * HEIGHT + 0.1 * metre + 3);
+            ++green;
+        }
+    CHECK(green > 150);
+    float depth = 1;
+    glReadPixels(WIDTH / 2, (GLint)(0.5 * HEIGHT - 0.1 * metre), 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    CHECK(depth < 1);
+    /* A plane within the block is behind the water's surface, and in view beside it; one before the block hides it. */
+    renderer.stage = RIVULET_AFTER;
+    p.metres = 3.7F;
+    picture(b, NULL);
+    int same = 0, water = 0;
+    for (int k = 0; k < WIDTH * HEIGHT; ++k) {
+        const int is = is_water(a + 4 * k);
+        water += is;
+        same += is ? memcmp(a + 4 * k, b + 4 * k, 4) == 0 : is_green(b + 4 * k);
+    }
+    CHECK(water > 150 && same > WIDTH * HEIGHT - 40);
+    p.metres = 2;
+    picture(b, NULL);
+    for (int k = 0; k < WIDTH * HEIGHT; ++k) CHECK(is_green(b + 4 * k));
+    /* So in a snapshot. */
+    DONE(rivulet_world_snapshot(world, snapshot, &why));
+    p.calls = 0;
+    rivulet_view view = from;
+    DONE(rivulet_snapshot_draw(snapshot, &view, &to, &why));
+    CHECK(p.calls == 1);
+    renderer.stage = 5;
+    refuses(NULL, "RIVULET_INSTEAD");
+    renderer.stage = RIVULET_INSTEAD;
+    renderer.draw = NULL;
+    refuses(NULL, "draw is NULL");
+    from.renderer = NULL;
+    CHECK(memcmp(picture(b, NULL), a, BYTES) == 0);
+    glDeleteProgram(p.plane);
+    glDeleteProgram(p.points);
+    glDeleteVertexArrays(1, &p.array);
+}
+
 int main(void) {
     if (!make_current()) return 77;
     rivulet_context* context = NULL;
@@ -137,6 +256,7 @@ int main(void) {
     const rivulet_world_options o = {.size = sizeof o, .json = "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"max\": [1, 0.4, 1]}]}}"};
     DONE(rivulet_world_create(context, &o, &world, &why));
     DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+    DONE(rivulet_snapshot_create(context, &snapshot, &why));
     to = (rivulet_target){.size = sizeof to, .framebuffer = make_target(WIDTH, HEIGHT), .width = WIDTH, .height = HEIGHT};
     /* From (0.5, 0.3, 4) along -z; 45 degrees high. */
     const float cot = 2.41421356F, near_plane = 0.1F, far_plane = 20;
@@ -146,16 +266,18 @@ int main(void) {
     projection[10] = -(far_plane + near_plane) / (far_plane - near_plane);
     projection[11] = -1;
     projection[14] = -2 * far_plane * near_plane / (far_plane - near_plane);
-    from = (rivulet_view){
-        .size = sizeof from, .view = view, .projection = projection, .near_plane = near_plane, .far_plane = far_plane};
+    from = (rivulet_view){.size = sizeof from, .view = view, .projection = projection, .near_plane = near_plane, .far_plane = far_plane};
     unsigned char *a = malloc(BYTES), *b = malloc(BYTES);
     if (a == NULL || b == NULL) return 1;
     surroundings_are_reflected(context, a, b);
     lights_add(a, b);
     shade_is_without_the_sun(a, b);
     thick_fog_is_all_that_is_seen(a);
+    from.light_colour[0] = from.light_colour[1] = from.light_colour[2] = 1;
+    a_hosts_renderer_draws(a, b);
     free(a);
     free(b);
+    rivulet_snapshot_destroy(snapshot);
     rivulet_world_destroy(world);
     rivulet_context_destroy(context);
     CHECK(glGetError() == GL_NO_ERROR);

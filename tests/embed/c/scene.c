@@ -100,7 +100,24 @@ static void shade_is_without_the_sun(unsigned char* a, unsigned char* b) {
     from.light_colour[0] = from.light_colour[1] = from.light_colour[2] = 2;
     CHECK(memcmp(picture(b, NULL), a, BYTES) != 0);
     CHECK(memcmp(picture(b, &lighting), a, BYTES) == 0);
+    /* So is a layer of an array, of which another layer is without shade. */
+    const float far_away = 1;
+    GLuint array = 0, layer = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &array);
+    glTextureStorage3D(array, 1, GL_DEPTH_COMPONENT24, 1, 1, 2);
+    glTextureSubImage3D(array, 0, 0, 0, 0, 1, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &far_away);
+    glTextureSubImage3D(array, 0, 0, 0, 1, 1, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    glGenTextures(1, &layer);
+    glTextureView(layer, GL_TEXTURE_2D, array, GL_DEPTH_COMPONENT24, 0, 1, 1, 1);
     rivulet_shadow wrong = shadow;
+    wrong.texture = layer;
+    lighting.shadow = &wrong;
+    CHECK(memcmp(picture(b, &lighting), a, BYTES) == 0);
+    wrong.texture = array;
+    refuses(&lighting, "texture view");
+    glDeleteTextures(1, &layer);
+    glDeleteTextures(1, &array);
+    wrong = shadow;
     wrong.projection = NULL;
     lighting.shadow = &wrong;
     refuses(&lighting, "no projection");

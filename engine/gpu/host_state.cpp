@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/core/assert.h"
+#include "engine/gpu/gl_error.h"
 #include "engine/gpu/gl_object.h"
 #include "engine/gpu/load.h"
 
@@ -397,5 +398,38 @@ HostState::~HostState() {
 }
 
 const HostDepth& HostState::depth() const { return kept_->depth; }
+
+BoundUnit::BoundUnit(unsigned unit, unsigned target) : unit_(unit), target_(target) {
+    const GLenum active = named(number(GL_ACTIVE_TEXTURE));
+    glActiveTexture(GL_TEXTURE0 + unit_);
+    texture_ = number(target_ == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_BINDING_CUBE_MAP : GL_TEXTURE_BINDING_2D);
+    sampler_ = number(GL_SAMPLER_BINDING);
+    glActiveTexture(active);
+}
+
+BoundUnit::~BoundUnit() {
+    const GLenum active = named(number(GL_ACTIVE_TEXTURE));
+    glActiveTexture(GL_TEXTURE0 + unit_);
+    glBindTexture(target_, static_cast<GLuint>(texture_));
+    glBindSampler(unit_, static_cast<GLuint>(sampler_));
+    glActiveTexture(active);
+}
+
+unsigned targetOfTexture(unsigned name) {
+    if ((number(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) == 0) {
+        GLint target = 0;
+        glGetTextureParameteriv(name, GL_TEXTURE_TARGET, &target);
+        return target == GL_TEXTURE_2D || target == GL_TEXTURE_CUBE_MAP ? named(target) : 0U;
+    }
+    // Mesa answers this query in core contexts alone. A texture can be bound to its own target alone.
+    for (const GLenum target : {GL_TEXTURE_2D, GL_TEXTURE_CUBE_MAP}) {
+        const BoundUnit unit(0, target);
+        glActiveTexture(GL_TEXTURE0);
+        clearGlErrors();
+        glBindTexture(target, name);
+        if (takeGlError() == GL_NO_ERROR) return target;
+    }
+    return 0;
+}
 
 }  // namespace rivulet::gpu

@@ -45,4 +45,20 @@ class HostState {
     std::unique_ptr<Kept> kept_, plain_;  // of the host; as it is within the scope
 };
 
+// Saves one texture binding that HostState does not save, and the sampler of its unit, and restores both at the end of the scope.
+class BoundUnit {
+  public:
+    BoundUnit(unsigned unit, unsigned target);  // GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP
+    ~BoundUnit();
+    BoundUnit(const BoundUnit&) = delete;
+    BoundUnit& operator=(const BoundUnit&) = delete;
+
+  private:
+    unsigned unit_, target_;
+    int texture_ = 0, sampler_ = 0;
+};
+
+// The target of a host's texture, which exists: GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP; 0: another one. Within a scope of HostState.
+unsigned targetOfTexture(unsigned name);
+
 }  // namespace rivulet::gpu

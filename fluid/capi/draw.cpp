@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
+#include <span>
+#include <utility>
 
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
@@ -15,6 +18,49 @@ Status drawable(const rivulet_context& context) {
     if (context.water) return stillThere(context, Needs::drawing);
     return badInput("the context has no OpenGL: set rivulet_context_options.find");
 }
+
+namespace {
+
+// Values are checked by WaterRenderer::draw.
+Status setLighting(const rivulet_lighting* lighting, WaterDraw& draw) {
+    const Result<rivulet_lighting> l = readStruct(lighting, "rivulet_lighting", "view.lighting");
+    if (!l) return l.error();
+    if (l->lights == nullptr && l->lights_count > 0)
+        return badInput(fmt::format("lighting.lights is NULL, and lights_count is {}", l->lights_count));
+    if (l->lights_count > kMostHostLights)
+        return badInput(fmt::format("lighting.lights_count is {}: give {} at most, the brightest", l->lights_count, kMostHostLights));
+    draw.lights.reserve(l->lights_count);
+    for (const rivulet_light& light : std::span(l->lights, l->lights_count)) {
+        if (!areWithin(light.direction, kBrightest) || !areWithin(light.colour, kBrightest))
+            return badInput(fmt::format("lighting.lights: a direction or colour is not finite, or beyond {}", kBrightest));
+        draw.lights.push_back({vectorOf(light.direction), vectorOf(light.colour)});
+    }
+    const Result<rivulet_shadow> shadow = readStruct(l->shadow, "rivulet_shadow", "lighting.shadow");
+    if (!shadow) return shadow.error();
+    if (l->shadow != nullptr) {
+        if (shadow->texture == 0 || shadow->projection == nullptr)
+            return badInput("lighting.shadow has no texture or no projection: give both, or set lighting.shadow to NULL");
+        draw.shadow = {.texture = shadow->texture,
+                       .projection = matrixOf(shadow->projection),
+                       .zeroToOne = shadow->zero_to_one != 0,
+                       .reversed = shadow->reversed != 0,
+                       .bias = shadow->bias};
+    }
+    const Result<rivulet_fog> fog = readStruct(l->fog, "rivulet_fog", "lighting.fog");
+    if (!fog) return fog.error();
+    if (fog->kind < RIVULET_NO_FOG || fog->kind > RIVULET_LINEAR_FOG)
+        return badInput(fmt::format("lighting.fog.kind is {}: use a rivulet_fog_kind, 0 to 3", fog->kind));
+    draw.fog = {.kind = static_cast<HostFog::Kind>(fog->kind),
+                .colour = vectorOf(fog->colour),
+                .density = fog->density,
+                .start = fog->start,
+                .end = fog->end,
+                .alongView = fog->along_view != 0,
+                .display = fog->display != 0};
+    return ok();
+}
+
+}  // namespace
 
 Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& liquid, const rivulet_view* view,
                             const rivulet_target* target) {
@@ -51,7 +97,22 @@ Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& li
                    .width = t.width,
                    .height = t.height,
                    .colours = static_cast<HostTarget::Colours>(t.colours)};
+    if (Status lit = setLighting(v.lighting, draw); !lit) return lit.error();
+    const Result<rivulet_renderer> own = readStruct(v.renderer, "rivulet_renderer", "view.renderer");
+    if (!own) return own.error();
+    if (v.renderer != nullptr) {
+        Result<HostRenderer> renderer = HostRenderer::of(*own, *draw.row);
+        if (!renderer) return renderer.error();
+        draw.renderer = std::move(*renderer);
+    }
     return draw;
+}
+
+Status drawWater(WaterRenderer& water, const gpu::HostState& scope, const FluidView& fluid, WaterDraw& draw) {
+    if (!draw.renderer) return water.draw(scope, draw.view, fluid, draw.look, draw.target, draw.row, draw.lighting());
+    const RendererRow row = draw.renderer->row();
+    if (Status drawn = water.draw(scope, draw.view, fluid, draw.look, draw.target, &row, draw.lighting()); !drawn) return drawn;
+    return draw.renderer->outcome();
 }
 
 FluidLookParams plainLook(FluidLookParams look) {
@@ -82,14 +143,42 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (world == nullptr) return badInput("world is NULL");
         if (Status there = drawable(*world->context); !there) return there;
         if (Status can = ready(*world->context, Needs::drawing); !can) return can;
-        const Result<WaterDraw> draw = waterDraw(world->params.look, world->params.fluid.liquid, view, target);
+        Result<WaterDraw> draw = waterDraw(world->params.look, world->params.fluid.liquid, view, target);
         if (!draw) return draw.error();
         const CallScope scope(*world->context, Needs::drawing);
         const Result<FluidView> fluid = world->upload.view(*world->world, world->params.look, world->fallingDrops, world->hangingDrops);
         if (!fluid) return fluid.error();
-        return world->context->water->draw(*world->context->hostGl, draw->view, *fluid, draw->look, draw->target, draw->row);
+        return drawWater(*world->context->water, *world->context->hostGl, *fluid, *draw);
     });
     if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
+    return status;
+}
+
+rivulet_status rivulet_context_set_surroundings(rivulet_context* context, const rivulet_surroundings* surroundings, rivulet_error* why) {
+    const rivulet_status status = guarded(why, [&]() -> Status {
+        if (context == nullptr) return badInput("context is NULL");
+        if (Status there = drawable(*context); !there) return there;
+        if (Status can = ready(*context, Needs::drawing); !can) return can;
+        if (surroundings == nullptr) return badInput("surroundings is NULL");
+        const Result<rivulet_surroundings> given = readStruct(surroundings, "rivulet_surroundings", "surroundings");
+        if (!given) return given.error();
+        HostSurroundings from{.texture = given->texture};
+        HdrImage image;
+        if (given->pixels != nullptr) {
+            constexpr int32_t kLargest = 1 << 15;  // texels
+            if (given->width < 1 || given->height < 1 || given->width > kLargest || given->height > kLargest)
+                return badInput(
+                    fmt::format("surroundings.pixels are {} x {}: give 1 to {} each way", given->width, given->height, kLargest));
+            image = {.name = "surroundings", .width = given->width, .height = given->height, .texels = {}};
+            image.texels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+            std::memcpy(image.texels.data(), given->pixels, image.texels.size() * sizeof(vec3));
+            from.image = &image;
+        }
+        if (given->turn != nullptr) std::memcpy(&from.turn[0][0], given->turn, sizeof from.turn);
+        const CallScope scope(*context, Needs::drawing);
+        return context->water->setSurroundings(*context->hostGl, from);
+    });
+    if (context != nullptr) context->hostLog.deliver(context->callback);
     return status;
 }
 

@@ -141,12 +141,12 @@ rivulet_status rivulet_snapshot_replay(rivulet_snapshot* snapshot, const rivulet
 rivulet_status rivulet_snapshot_draw(rivulet_snapshot* snapshot, const rivulet_view* view, const rivulet_target* target,
                                      rivulet_error* why) {
     return whileStepping(snapshot, why, [&]() -> Status {
-        const Result<WaterDraw> draw = waterDraw(snapshot->look, snapshot->liquid, view, target);
+        Result<WaterDraw> draw = waterDraw(snapshot->look, snapshot->liquid, view, target);
         if (!draw) return draw.error();
         const gpu::HostState keep(savesOf(*snapshot->context));
         const Result<FluidView> fluid = snapshot->upload.view(snapshot->taken, snapshot->look);
         if (!fluid) return fluid.error();
-        return snapshot->context->water->draw(keep, draw->view, *fluid, draw->look, draw->target, draw->row);
+        return drawWater(*snapshot->context->water, keep, *fluid, *draw);
     });
 }
 

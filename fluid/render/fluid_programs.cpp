@@ -27,6 +27,7 @@ constexpr ProgramRow kShared[] = {
     {"drops over water", "screen_space/drop.vert", "screen_space/drop.frag", {"OVER_WATER"}},
     {"pendants", "screen_space/pendant.vert", "screen_space/pendant.frag"},
     {"pendants over water", "screen_space/pendant.vert", "screen_space/pendant.frag", {"OVER_WATER"}},
+    {"scene and water depth", "render/fullscreen.vert", "screen_space/scene_and_water_depth.frag"},
     {"foam", "screen_space/foam.vert", "screen_space/foam.frag"},
     {"foam over water", "screen_space/foam.vert", "screen_space/foam.frag", {"OVER_WATER"}},
 };

@@ -5,18 +5,19 @@
 #include <glm/matrix.hpp>
 
 namespace rivulet {
-namespace {
-
-using glm::dvec4;
-
-constexpr double kSkew = 1.0e-3;   // of two unit vectors: rounding of a host's floats is less
-constexpr double kAlike = 1.0e-9;  // difference of two clip depths
 
 bool isFinite(const mat4& m) {
     for (int column = 0; column < 4; ++column)
         if (!rivulet::isFinite(vec3(m[column])) || !std::isfinite(m[column].w)) return false;
     return true;
 }
+
+namespace {
+
+using glm::dvec4;
+
+constexpr double kSkew = 1.0e-3;   // of two unit vectors: rounding of a host's floats is less
+constexpr double kAlike = 1.0e-9;  // difference of two clip depths
 
 Status usable(const FrameView& v, bool parallel) {
     if (!std::isfinite(v.unitsPerMetre) || !(v.unitsPerMetre > 0))

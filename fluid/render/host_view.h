@@ -8,6 +8,8 @@
 
 namespace rivulet {
 
+bool isFinite(const mat4& m);
+
 struct HostView {
     FrameView view;  // the same camera; its picture is the host's, mirrored as `flipX` and `flipY` say
     bool flipX = false, flipY = false;

@@ -67,6 +67,23 @@ void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle fro
     });
 }
 
+gpu::TextureHandle addSceneAndWaterDepth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
+    if (!layers.fluidDepth) return d.depth;
+    const gpu::TextureHandle depth = graph.texture("scene and water depth", graph.desc(d.depth));
+    graph.pass("scene and water depth", {{d.frame, gpu::Usage::uniform}, d.depth, layers.fluidDepth}, {depth},
+               [=, &programs](gpu::PassContext& c) {
+                   c.drawTo({}, depth);
+                   c.state({.depthTest = true, .depthFunction = GL_ALWAYS});
+                   glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+                   gpu::Program& p = programs["scene and water depth"];
+                   p.use();
+                   p.texture("sceneDepth", 0, c.texture(d.depth));
+                   p.texture("waterDepth", 1, c.texture(layers.fluidDepth));
+                   c.drawFullscreen();
+               });
+    return depth;
+}
+
 gpu::TextureDesc tilesOf(const FrameView& view) {
     return {.width = (view.width + kTilePixels - 1) / kTilePixels,
             .height = (view.height + kTilePixels - 1) / kTilePixels,

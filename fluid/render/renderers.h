@@ -32,6 +32,7 @@ struct FluidDraw {
     gpu::TextureHandle caustics;                           // addCaustics's; empty: none
     // Draws transparent objects behind the water into `colour`; called before the water is drawn. `fluidDepth`: of FluidLayers.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
+    void* user = nullptr;  // RendererRow::user
     // Called by a slow renderer with the finished share, 0 to 1; false: it may stop.
     std::function<bool(double)> progress = [](double) { return true; };
 };
@@ -48,6 +49,7 @@ struct RendererRow {
     FluidLayers (*add)(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
     std::span<const ProgramRow> programs = {};  // that add() draws with; of the table's rows FluidPrograms::create makes them
     bool ellipsoids = false;                    // reads FluidDraw::ellipsoids, which the world then computes
+    void* user = nullptr;                       // of a host's row: anything that its add() needs
 };
 const Table<RendererRow>& renderers();
 
@@ -106,6 +108,9 @@ void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
 
 // Draws the drops in the air, and those that hang, into layers.colour. The result is the scene's depth with theirs in it.
 gpu::TextureHandle addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
+
+// The depth of the scene with the water's surface in it, to test against: window depth.
+gpu::TextureHandle addSceneAndWaterDepth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
 // The volume of a particle divided by that of its drawn sphere: turns lengths within spheres into lengths within water.
 float volumeScale(const FluidView& fluid);

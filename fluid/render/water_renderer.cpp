@@ -1,9 +1,13 @@
 #include "fluid/render/water_renderer.h"
 
 #include <fmt/format.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "engine/core/readable_bytes.h"
 #include "engine/gpu/host_state.h"
@@ -11,7 +15,9 @@
 #include "engine/render/environment_map.h"
 #include "engine/render/frame_params.h"
 #include "fluid/render/host_picture.h"
+#include "fluid/render/host_surroundings.h"
 #include "fluid/render/look_params.h"
+#include "fluid/render/pack_lighting.h"
 #include "fluid/render/renderers.h"
 
 namespace rivulet {
@@ -22,17 +28,33 @@ struct WaterRenderer::Impl {
     gpu::TransientPool pool;
     gpu::Buffer frame, coarse;
     gpu::Texture nothing, surroundings;
+    gpu::Sampler plainSampler;
     std::array<vec4, 9> matte{};
-    size_t most = SIZE_MAX;  // bytes of pictures
+    std::optional<SurroundingsMap> hosts;  // instead of `surroundings` and `matte`
+    size_t most = SIZE_MAX;                // bytes of pictures
 
-    size_t ownBytes() const { return surroundings.desc().bytes() + nothing.desc().bytes(); }
+    size_t ownBytes() const { return surroundings.desc().bytes() + nothing.desc().bytes() + (hosts ? hosts->bytes() : 0); }
     Status create(const WaterRendererOptions& options);
-    Status draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row);
+    Status setSurroundings(const HostSurroundings& from);
+    Status draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row, const FrameView& host,
+                const HostLighting& lighting);
 };
 
-Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
+namespace {
+
+constexpr unsigned kSurroundingsUnit = 16, kShadowUnit = 17;  // beyond those that the graph empties before each pass
+
+ShaderFiles shaderFiles() {
     ShaderFiles files = ShaderFiles::developer();
     files.define({"ENVIRONMENT_MAP", "1"});
+    files.define({"HOST_LIGHT", "1"});
+    return files;
+}
+
+}  // namespace
+
+Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
+    const ShaderFiles files = shaderFiles();
     const DiskCache cache(cacheFolder("surroundings"), options.log);
     const Environment filtered =
         options.surroundings != nullptr ? cachedEnvironment(*options.surroundings, cache) : cachedEnvironment(options.sky, cache);
@@ -40,6 +62,7 @@ Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
     if (!map) return map.error();
     surroundings = std::move(*map);
     matte = filtered.matte;
+    plainSampler = gpu::Sampler({.min = gpu::Filter::nearest, .mag = gpu::Filter::nearest}, false);
     Result<FluidPrograms> programs = FluidPrograms::create(files);
     if (!programs) return programs.error();
     fluid = std::move(*programs);
@@ -62,7 +85,18 @@ Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
     return ok();
 }
 
-Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row) {
+Status WaterRenderer::Impl::setSurroundings(const HostSurroundings& from) {
+    const size_t left = most - std::min(most, ownBytes());
+    if (hosts) return hosts->take(from, left);
+    Result<SurroundingsMap> made = SurroundingsMap::create(shaderFiles());
+    if (!made) return made.error();
+    if (Status taken = made->take(from, left); !taken) return taken;
+    hosts = std::move(*made);
+    return ok();
+}
+
+Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row, const FrameView& host,
+                                 const HostLighting& lighting) {
     const FrameView& view = picture.view();
     fluid.kept.limit(most - std::min(most, ownBytes() + picture.bytes() + pool.bytes()));
     Studio studio;
@@ -71,6 +105,7 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
     const auto packed = [&](const FrameView& of) {
         FrameParams params = packFrame(of, studio, {}, water);
         std::copy(matte.begin(), matte.end(), params.matteLight);
+        packLighting(lighting, host, params);
         return params;
     };
     const FrameParams params = packed(view);
@@ -79,7 +114,11 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
         const FrameParams half = packed(view.half());
         coarse.write(std::as_bytes(std::span(&half, 1)));
     }
-    surroundings.bind(16);  // beyond those that the graph empties before each pass
+    if (hosts)
+        for (const gpu::Buffer* block : {&frame, &coarse})
+            glCopyNamedBufferSubData(hosts->matte().name(), block->name(), 0, offsetof(FrameParams, matteLight),
+                                     static_cast<GLsizeiptr>(hosts->matte().bytes()));
+    (hosts ? hosts->map() : surroundings).bind(kSurroundingsUnit);
 
     gpu::FrameGraph graph(pool);
     const gpu::TextureHandle none = graph.importTexture("nothing", nothing);
@@ -87,6 +126,7 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
     d.view = view;
     d.fluid = fluidView;
     d.look = look;
+    d.user = row.user;
     if (look.fast) d.fluid.ellipsoids = {};
     d.frame = graph.importBuffer("frame", frame.name(), frame.bytes());
     if (look.fast) d.coarse = graph.importBuffer("coarse frame", coarse.name(), coarse.bytes());
@@ -144,26 +184,42 @@ Result<std::unique_ptr<WaterRenderer>> WaterRenderer::create(const WaterRenderer
 }
 
 Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
-                           const RendererRow* row) {
+                           const RendererRow* row, const HostLighting& lighting) {
     if (isEmpty(fluid)) return ok();
     const gpu::HostState scope(isOurs(row) ? gpu::HostState::rivulets : gpu::HostState::everything);
-    return draw(scope, view, fluid, look, target, row);
+    return draw(scope, view, fluid, look, target, row, lighting);
 }
 
 Status WaterRenderer::draw(const gpu::HostState& scope, const FrameView& view, const FluidView& fluid, const FluidLook& look,
-                           const HostTarget& target, const RendererRow* row) {
+                           const HostTarget& target, const RendererRow* row, const HostLighting& lighting) {
     if (Status fits = impl_->fluid.fits(fluid); !fits) return fits;
     if (isEmpty(fluid)) return ok();
     if (Status can = HostPicture::nothingUnderWay(); !can) return can;
+    if (Status can = usable(lighting); !can) return can;
     impl_->picture.limit(impl_->most - impl_->ownBytes());
     if (Status taken = impl_->picture.take(target, scope.depth(), view); !taken) return taken;
     const RendererRow& by = row != nullptr ? *row : *renderers().find(FluidLookParams().renderer);
-    Status drawn = impl_->draw(fluid, look, by);
+    std::optional<gpu::BoundUnit> unit;
+    if (lighting.shadow.texture != 0) {
+        unit.emplace(kShadowUnit, GL_TEXTURE_2D);
+        glBindTextureUnit(kShadowUnit, lighting.shadow.texture);
+        impl_->plainSampler.bind(kShadowUnit);  // which compares nothing
+    }
+    Status drawn = impl_->draw(fluid, look, by, view, lighting);
     if (!drawn && impl_->fluid.kept.bytes() > 0) {  // what is kept only saves time: it gives way to the pictures of this frame
         impl_->fluid.kept.clear();
-        drawn = impl_->draw(fluid, look, by);
+        drawn = impl_->draw(fluid, look, by, view, lighting);
     }
     return drawn;
+}
+
+Status WaterRenderer::setSurroundings(const HostSurroundings& surroundings) {
+    const gpu::HostState scope;
+    return setSurroundings(scope, surroundings);
+}
+
+Status WaterRenderer::setSurroundings(const gpu::HostState&, const HostSurroundings& surroundings) {
+    return impl_->setSurroundings(surroundings);
 }
 
 const std::vector<PassTime>& WaterRenderer::times() const { return impl_->pool.times(); }

@@ -18,6 +18,7 @@
 #include "engine/render/made_sky.h"
 #include "fluid/render/fluid_look.h"
 #include "fluid/render/fluid_view.h"
+#include "fluid/render/host_lighting.h"
 #include "fluid/render/host_target.h"
 
 namespace rivulet {
@@ -48,13 +49,19 @@ class WaterRenderer {
     // orthographic projection, in any mode of glClipControl, reversed or not, right- or left-handed, mirrored or not, with an oblique near
     // plane or not. nearPlane and farPlane are finite and enclose the scene. All are in the host's unit of length, of which
     // `view.unitsPerMetre` are a metre; cameraPosWorld, width and height are not read. Light is in the target's units: in an srgb target, 1
-    // is white. `row`: a row of renderers(), or one of the host; null: the water's surface. Error: (badInput) a condition above that does
-    // not hold; (failed) out of memory.
+    // is white. `row`: a row of renderers(), or one of the host; null: the water's surface. `lighting`: lights besides the view's, its
+    // shadow map, and the fog of the scene. Error: (badInput) a condition above that does not hold; (failed) out of memory.
     Status draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
-                const RendererRow* row = nullptr);
+                const RendererRow* row = nullptr, const HostLighting& lighting = {});
     // The same within a scope of HostState that the host holds, around several calls: state is saved once.
     Status draw(const gpu::HostState& scope, const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
-                const RendererRow* row = nullptr);
+                const RendererRow* row = nullptr, const HostLighting& lighting = {});
+
+    // Replaces what the water reflects beside the picture itself. Costs 10 small draws and waits for nothing, so that a host may call it in
+    // each frame while its sky changes. Error (badInput): none or two are given, a value of the image is negative or not finite, the
+    // texture is of another kind, the turn is no rotation; (failed): out of memory. Then the ones before stay.
+    Status setSurroundings(const HostSurroundings& surroundings);
+    Status setSurroundings(const gpu::HostState& scope, const HostSurroundings& surroundings);
 
     const std::vector<PassTime>& times() const;  // GPU ms a pass, two or three frames late
     size_t bytes() const;                        // of its textures

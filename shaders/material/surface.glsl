@@ -21,16 +21,24 @@ vec3 glossOf(vec3 f0, float roughness, float nv) {
     return f0 * (-1.04 * b + k.z) + (1.04 * b + k.w);
 }
 
-// `mirrored`: radiance of the environment from the mirror direction, blurred by the roughness.
-vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving, vec3 mirrored) {
+// The light of one direction that the surface sends to the eye.
+vec3 directLight(Surface s, vec3 toEye, vec3 towards, vec3 lightArriving) {
     float nv = max(dot(s.normal, toEye), 1.0e-3);
-    float nl = max(dot(s.normal, frame.lightDir.xyz), 0.0);
-    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    float nl = max(dot(s.normal, towards), 0.0);
+    vec3 h = normalize(toEye + towards);
     float nh = max(dot(s.normal, h), 0.0), vh = max(dot(toEye, h), 0.0);
     vec3 f0 = mix(vec3(0.04), s.baseColour, s.metallic);
     vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
     vec3 matte = s.baseColour * (1.0 - s.metallic);
-    vec3 direct = (matte * 0.3183099 + fresnel * highlight(nl, nv, nh, max(s.roughness * s.roughness, 0.01))) * nl * lightArriving;
+    return (matte * 0.3183099 + fresnel * highlight(nl, nv, nh, max(s.roughness * s.roughness, 0.01))) * nl * lightArriving;
+}
+
+// `mirrored`: radiance of the environment from the mirror direction, blurred by the roughness.
+vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving, vec3 mirrored) {
+    float nv = max(dot(s.normal, toEye), 1.0e-3);
+    vec3 f0 = mix(vec3(0.04), s.baseColour, s.metallic);
+    vec3 matte = s.baseColour * (1.0 - s.metallic);
+    vec3 direct = directLight(s, toEye, frame.lightDir.xyz, lightArriving);
     vec3 indirect = matte * ambient(s.normal) + glossOf(f0, s.roughness, nv) * mirrored;
     return direct + indirect * s.occlusion;
 }

@@ -24,5 +24,6 @@ void main() {
     float turn = 2.0 * (asin(min(d, 1.0)) - asin(min(d, 1.0) / refractiveIndex));
     vec3 bent = -toEye * cos(turn) - outwards * sin(turn);
     gl_FragDepth = windowOfDepth(cover > 0.5 ? depth : depthBehind());
-    colour = vec4(lightOfDrop(seenThrough(centreView.xyz, bent, depth, 0.0), n, toEye, 0.0), cover * share);
+    vec3 through = seenThrough(centreView.xyz, bent, depth, 0.0);
+    colour = vec4(lightOfDrop(through, vec3(centreView.xy, -depth), n, toEye, 0.0), cover * share);
 }

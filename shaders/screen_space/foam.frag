@@ -1,5 +1,6 @@
 // A foam particle: all have one colour, so that their order does not matter. Below the water's surface it fades.
 #include "shaders/render/frame.glsl"
+#include "shaders/render/fog.glsl"
 uniform sampler2D sceneDepth;  // window depth
 #if defined(OVER_WATER)
 uniform sampler2D waterDepth;  // m
@@ -44,4 +45,5 @@ void main() {
     colour.rgb *= exp(-2.0 * absorption * under);
     colour.a *= exp(-under / (8.0 * radius));
 #endif
+    colour.rgb = fogged(colour.rgb, fogPasses(gl_FragCoord.xy, depth));
 }

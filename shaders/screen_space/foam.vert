@@ -1,6 +1,7 @@
 // A particle of spray, foam or bubbles as a quad: spray is drawn out along its path during the exposure, foam lies on the water.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
+#include "shaders/render/lights.glsl"
 #include "shaders/render/shadow.glsl"
 #include "shaders/screen_space/quads.glsl"
 ROWS(0, flecks)        // xyz m, world; w s, remaining lifetime
@@ -32,7 +33,11 @@ void main() {
     if (foam && !seenFromAbove) over = normalize(mix(over, cross(right, up) * sign(dot(cross(right, up), over)), 0.85));
     place = (corner() * 2.0 - 1.0) * vec2(1.0 + stretch, 1.0);
     cells = vec3(fract(float(row()) * vec2(0.7548777, 0.5698403)) * 64.0, foam ? smoothstep(3.0, 9.0, drawn / pixel) : 0.0);
-    vec3 light = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (0.3183099 * meshShadow(fleck.xyz, frame.lightDir.xyz) * (0.4 + 0.6 * max(frame.lightDir.y, 0.0)));
+    vec3 light = ambient(vec3(0.0, 1.0, 0.0));
+    for (int k = 0; k < lightCount(); ++k) {
+        float share = (k == 0 ? meshShadow(fleck.xyz, frame.lightDir.xyz) : 1.0) * lightShare(k, fleck.xyz);
+        light += lightColour(k) * (0.3183099 * share * (0.4 + 0.6 * max(lightTowards(k).y, 0.0)));
+    }
     white = vec4(0.92 * light, share * (foam ? 0.3 * smoothstep(0.0, 0.8, fleck.w) : kind == 1.0 ? 0.45 / (1.0 + 0.6 * stretch) : 0.35));
     bool there = !beyond() && fleck.w > 0.0 && dot(fleck.xyz, fleck.xyz) < 1.0e12 && depth - drawn * (1.0 + stretch) > frame.planes.x;
     gl_Position = there ? frame.projection * vec4(c + drawn * (right * place.x + over * place.y), 1.0) : kNowhere;

@@ -62,7 +62,7 @@ vec3 skinAt(vec3 at) {
         vec2 uv = pixelOf(at - drop.axis.xyz * (above * drop.lean.w)) * frame.viewport.zw;
         uv = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
         bool there = abs(depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) + at.z) < 10.0 * drop.lean.w;
-        if (there || above == 0.0) return textureLod(sceneColour, uv, 0.0).rgb;
+        if (there || above == 0.0) return unfogged(textureLod(sceneColour, uv, 0.0).rgb, fogPasses(gl_FragCoord.xy, -at.z));
     }
 }
 
@@ -88,8 +88,11 @@ vec3 seenInside(vec3 from, vec3 way, float radius, float depth) {
         vec3 back = reflect(way, n);
         if (dot(out_, out_) > 0.5) {
             // Its far side reflects the lamp: a bright spot on the side away from it, where the ray back leaves about as it goes.
-            float glint = smoothstep(0.9, 0.99, dot(directionToWorld(back), frame.lightDir.xyz));
-            vec3 mirrored = 0.04 * environment(directionToWorld(back), 0.1) + frame.lightColour.rgb * (0.3 * glint);
+            vec3 mirrored = 0.04 * environment(directionToWorld(back), 0.1);
+            for (int light = 0; light < lightCount(); ++light) {
+                float glint = smoothstep(0.9, 0.99, dot(directionToWorld(back), lightTowards(light)));
+                mirrored += lightColour(light) * (0.3 * glint * lightShare(light, toWorld(from)));
+            }
             return (seenOutside(from, out_, depth) + mirrored) * clear;
         }
         way = back;
@@ -115,5 +118,5 @@ void main() {
     if (dot(n, sight) > 0.0) n = normalize(n - sight * (dot(n, sight) + 1.0e-3));
     float closed = 1.0 - smoothstep(0.1, 0.4, depthBehind() - depth);
     vec3 inside = seenInside(p, refract(sight, n, 1.0 / refractiveIndex), radius, depth);
-    colour = vec4(lightOfDrop(inside, n, -sight, closed), cover * drop.axis.w);
+    colour = vec4(lightOfDrop(inside, p, n, -sight, closed), cover * drop.axis.w);
 }

@@ -1,7 +1,9 @@
 // Shades the water's surface: the refracted and attenuated background, and the reflection.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
+#include "shaders/render/fog.glsl"
 #include "shaders/render/fresnel.glsl"
+#include "shaders/render/lights.glsl"
 #include "shaders/render/shadow.glsl"
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;   // window depth
@@ -124,9 +126,12 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     vec3 p = from + dir * high;
     vec2 uv = pixelOf(p) * frame.viewport.zw;
     vec2 edge = smoothstep(vec2(0.5), vec2(0.42), abs(uv - 0.5));
+    float ownDepth = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r);
     // Far behind what is seen there, the ray has not met it but passed behind it.
-    float met = 1.0 - smoothstep(0.5 * radius, 0.5 * radius + 0.1 * high, -p.z - depthOfWindow(textureLod(sceneDepth, uv, 0.0).r));
-    return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y * met);
+    float met = 1.0 - smoothstep(0.5 * radius, 0.5 * radius + 0.1 * high, -p.z - ownDepth);
+    // Its fog is that of the way from the surface.
+    float passes = fogPasses(uv * frame.viewport.xy, ownDepth) / max(fogPasses(high), 1.0e-6);
+    return vec4(unfogged(textureLod(sceneColour, uv, 0.0).rgb, passes), edge.x * edge.y * met);
 }
 
 #if defined(INK)
@@ -142,13 +147,13 @@ vec2 otherLiquid(float depth) {
 }
 #endif
 
-// The sun's glint: GGX (Walter et al. 2007) of water whose normal turns by `turn` from pixel to pixel. The sun is a disc and the water has
+// A light's glint: GGX (Walter et al. 2007) of water whose normal turns by `turn` from pixel to pixel. The sun is a disc and the water has
 // ripples finer than particles, so that it is nowhere sharper than `kFinest`; and none is brighter than the picture can take without sparkling.
 const float kFinest = 0.035, kMostGlint = 8.0;
-vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 light) {
-    float nl = dot(n, frame.lightDir.xyz), nv = max(dot(n, toEye), 0.02);
+vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 towards, vec3 light) {
+    float nl = dot(n, towards), nv = max(dot(n, toEye), 0.02);
     if (nl <= 0.0) return vec3(0.0);
-    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    vec3 h = normalize(toEye + towards);
     float nh = max(dot(n, h), 0.0), a = min(kFinest + 0.5 * length(turn), 0.5), a2 = a * a;
     float k = nh * nh * (a2 - 1.0) + 1.0;
     float lobe = a2 / (3.1415927 * k * k) * 0.5 / (mix(2.0 * nl * nv, nl + nv, a) + 1.0e-4) * nl;
@@ -258,6 +263,8 @@ void main() {
         }
         stretch *= 0.4;
     }
+    float passes = fogPasses(gl_FragCoord.xy, depth);
+    back = unfogged(back, passes);
     vec3 posWorld = toWorld(p);
     vec3 nWorld = directionToWorld(n), eyeWorld = directionToWorld(toEye);
     float lit = meshShadow(posWorld, nWorld);
@@ -270,10 +277,17 @@ void main() {
     vec3 returned = layer(absorbed, thrown, diffuse);
     // In a clear liquid, light from above illuminates all of it; in a cloudy one it leaves near the point of entry.
     vec3 cloudy = 1.0 - exp(-0.3 * thrown);
-    float facing = dot(nWorld, frame.lightDir.xyz);
-    vec3 above = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
-    vec3 front = ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * max(0.85 * facing + 0.15, 0.0));
-    vec3 rear = ambient(-nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * max(-facing, 0.0));
+    vec3 above = ambient(vec3(0.0, 1.0, 0.0)), front = ambient(nWorld), rear = ambient(-nWorld), sun = vec3(0.0);
+    for (int k = 0; k < lightCount(); ++k) {
+        vec3 towards = lightTowards(k), light = lightColour(k);
+        float share = (k == 0 ? lit : 1.0) * lightShare(k, posWorld), facing = dot(nWorld, towards);
+        above += light * (share * 0.25 * max(towards.y, 0.0));
+        front += light * (share * 0.3183099 * max(0.85 * facing + 0.15, 0.0));
+        rear += light * (share * 0.3183099 * max(-facing, 0.0));
+        float mirror = fresnel(max(dot(eyeWorld, normalize(eyeWorld + towards)), 0.02), refractiveIndex);
+        sun += glint(nWorld, eyeWorld, turn, mirror, towards, light * share);
+    }
+    sun *= smoothstep(0.0, 0.8 * radius, through);
     vec3 glow = mix(above, front, cloudy);
     vec3 scattered = returned * glow + max(diffuse - passed, 0.0) * mix(above, rear, cloudy);
     vec3 transmitted = back * passed + scattered;
@@ -295,9 +309,8 @@ void main() {
     float mirror = fresnel(nv, refractiveIndex) * smoothstep(0.0, 0.8 * radius, through);
     vec4 met = mirroredScene(p, reflect(-toEye, n), mirror > 0.03 ? mirrorSteps : 0);
     reflected = mix(reflected, met.rgb, met.a);
-    vec3 sun = glint(nWorld, eyeWorld, turn, fresnel(max(dot(eyeWorld, normalize(eyeWorld + frame.lightDir.xyz)), 0.02), refractiveIndex), frame.lightColour.rgb * lit) *
-               smoothstep(0.0, 0.8 * radius, through);
     // At contact with a solid it fades, to avoid a hard line.
     float there = smoothstep(0.0, 0.4 * radius, behind - depth) * covered;
-    colour.rgb = mix(mix(colour.rgb, mix(transmitted, reflected, mirror) + sun, there), within, under);
+    vec3 seen = fogged(mix(transmitted, reflected, mirror) + sun, passes);
+    colour.rgb = mix(mix(colour.rgb, seen, there), within, under);
 }

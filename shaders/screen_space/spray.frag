@@ -1,6 +1,8 @@
 // Droplets of one particle: spheres of the liquid, drawn out along their paths, and the mist around them.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
+#include "shaders/render/fog.glsl"
+#include "shaders/render/lights.glsl"
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;  // window depth
 uniform sampler2D waterDepth;  // m
@@ -64,9 +66,16 @@ void main() {
     // A drop shows all that is around it, too small for details, and little of what is close behind; what is in front of it, it does not
     // show.
     float seen = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < depth ? 0.0 : 0.6 * inside.x * inside.y;
-    vec3 through = mix(ambient(directionToWorld(bent)), textureLod(sceneColour, uv, 0.0).rgb, seen);
-    vec3 sun = frame.lightColour.rgb * lit;
-    vec3 white = ambient(directionToWorld(n)) + sun * (0.3183099 * (0.5 + 0.5 * dot(directionToWorld(n), frame.lightDir.xyz)));
+    float passes = fogPasses(gl_FragCoord.xy, depth);
+    vec3 through = mix(ambient(directionToWorld(bent)), unfogged(textureLod(sceneColour, uv, 0.0).rgb, passes), seen);
+    vec3 white = ambient(directionToWorld(n)), suns = vec3(0.0), glints = vec3(0.0);
+    for (int k = 0; k < lightCount(); ++k) {
+        vec3 sun = lightColour(k) * (k == 0 ? lit : 1.0), half_ = normalize(toEye + transpose(mat3(frame.inverseView)) * lightTowards(k));
+        white += sun * (0.3183099 * (0.5 + 0.5 * dot(directionToWorld(n), lightTowards(k))));
+        // A highlight is drawn out along the path, and only of a drop of several pixels is it a spot of its own.
+        glints += sun * (0.5 * smoothstep(0.92, 0.995, dot(n, half_)) * smoothstep(0.8, 4.0, radius / pixel) * bright);
+        suns += sun;
+    }
 #if defined(INK)
     vec4 own = ink;
 #else
@@ -77,10 +86,7 @@ void main() {
     float base = (refractiveIndex - 1.0) / (refractiveIndex + 1.0), flat_ = 1.0 - nv, flat2 = flat_ * flat_;
     float mirror = mix(base * base, 1.0, flat2 * flat2 * flat_);  // Schlick 1994
     vec3 mirrored = environment(directionToWorld(reflect(-toEye, n)), 0.2);
-    vec3 half_ = normalize(toEye + transpose(mat3(frame.inverseView)) * frame.lightDir.xyz);
-    // A highlight is drawn out along the path, and only of a drop of several pixels is it a spot of its own.
-    float glint = 0.5 * smoothstep(0.92, 0.995, dot(n, half_)) * smoothstep(0.8, 4.0, radius / pixel) * bright;
-    vec3 drop = mix(through * passed + thrown * white, mirrored, mirror) + sun * glint;
-    vec3 cloud = 0.9 * (ambient(vec3(0.0, 1.0, 0.0)) + sun * 0.25);
-    colour = vec4(mix(cloud, drop, cover / max(cover + (1.0 - cover) * mist, 1.0e-4)), all * there);
+    vec3 drop = mix(through * passed + thrown * white, mirrored, mirror) + glints;
+    vec3 cloud = 0.9 * (ambient(vec3(0.0, 1.0, 0.0)) + suns * 0.25);
+    colour = vec4(fogged(mix(cloud, drop, cover / max(cover + (1.0 - cover) * mist, 1.0e-4)), passes), all * there);
 }

@@ -1,5 +1,6 @@
 // A particle that has left the body of the water, as the droplets that it stands for: a point or quad over them and their paths during the exposure.
 #include "shaders/render/frame.glsl"
+#include "shaders/render/lights.glsl"
 #include "shaders/render/shadow.glsl"
 #include "shaders/screen_space/particle.glsl"
 ROWS(1, velocities)        // xyz m/s
@@ -21,7 +22,7 @@ flat out vec3 centreView;          // m
 flat out vec3 alongView;           // unit, perpendicular to the line of sight
 flat out float haze;               // opacity of what is finer, at the centre
 flat out vec2 reach;               // m, of that
-flat out float lit;                // share of the key light that meshes let pass
+flat out float lit;                // share of the key light that meshes and the host's scene let pass
 
 // PCG (Jarzynski and Olano 2020): three numbers, 0 to 1, that stay with the droplet.
 vec3 chosen(uvec3 v) {
@@ -66,7 +67,7 @@ void main() {
     vec2 margin = max(vec2(far_, wide), kSeen * reach) + 0.6 * pixel;
     centreView = c;
     alongView = along;
-    lit = meshShadow(particle.xyz, frame.lightDir.xyz);
+    lit = meshShadow(particle.xyz, frame.lightDir.xyz) * lightShare(0, particle.xyz);
     if (depth - reach.y <= frame.planes.x) return;
     if (asPoint()) {  // the corners of the same quad
         vec2 low = vec2(1.0e9), high = -low;

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 
-#include "engine/app/capture.h"
 #include "engine/gpu/host_state.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
@@ -66,18 +64,7 @@ class WaterInAnyView : public testing::HostWater {
         EXPECT_TRUE(done) << name << ": " << done.error().message;
         drawn.pixels = host.pixels();
         drawn.places = host.places();
-        if (const char* folder = std::getenv("RIVULET_PICTURES")) {
-            std::vector<uint8_t> rgba;
-            rgba.reserve(size_t{4} * kWidth * kHeight);
-            for (int y = kHeight - 1; y >= 0; --y)
-                for (int x = 0; x < kWidth; ++x)
-                    for (int k = 0; k < 4; ++k)
-                        rgba.push_back(
-                            k == 3 ? 255
-                                   : static_cast<uint8_t>(
-                                         255 * std::clamp(drawn.pixels[static_cast<size_t>(y * kWidth + x)][k], 0.0F, 1.0F) + 0.5F));
-            EXPECT_TRUE(writePng(fmt::format("{}/{}.png", folder, name), rgba, kWidth, kHeight));
-        }
+        testing::keepPicture(name, drawn.pixels, kWidth, kHeight);
         return drawn;
     }
     // `colours`: mean over the picture, of 1. `far`: share of the pixels whose place differs by more than 2 cm.

@@ -111,7 +111,7 @@ void makeOdd(bool old) {
         else
             glBindBufferRange(GL_SHADER_STORAGE_BUFFER, k, bufferOf(1024), 256, 128);
     }
-    for (const GLuint unit : {0U, 1U, 5U, 16U, 25U, 40U}) {
+    for (const GLuint unit : {0U, 1U, 5U, 16U, 17U, 25U, 40U}) {
         glActiveTexture(GL_TEXTURE0 + unit);
         for (const GLenum target : {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP,
                                     GL_TEXTURE_BUFFER, GL_TEXTURE_RECTANGLE, GL_TEXTURE_2D_MULTISAMPLE, GL_TEXTURE_CUBE_MAP_ARRAY})
@@ -183,6 +183,21 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
         const Status drawn = (*renderer)->draw(host.view(), testing::viewOf(*world), {}, host.target());
         ASSERT_TRUE(drawn) << drawn.error().message;
         EXPECT_EQ(difference(before, glSnapshot()), "") << "draw()";
+        // With a host's surroundings and shadow map.
+        GLuint cube = 0, map = 0;
+        glCreateTextures(GL_TEXTURE_CUBE_MAP, 1, &cube);
+        glTextureStorage2D(cube, 1, GL_RGBA16F, 4, 4);
+        glCreateTextures(GL_TEXTURE_2D, 1, &map);
+        glTextureStorage2D(map, 1, GL_DEPTH_COMPONENT24, 4, 4);
+        const HdrImage grey{.name = "grey", .width = 2, .height = 1, .texels = {vec3(0.5F), vec3(0.5F)}};
+        for (const HostSurroundings& around : {HostSurroundings{.image = &grey}, HostSurroundings{.texture = cube}}) {
+            const Status set = (*renderer)->setSurroundings(around);
+            ASSERT_TRUE(set) << set.error().message;
+            EXPECT_EQ(difference(before, glSnapshot()), "") << "setSurroundings()";
+        }
+        const HostLighting lighting{.shadow = {.texture = map}};
+        ASSERT_TRUE((*renderer)->draw(host.view(), testing::viewOf(*world), {}, host.target(), nullptr, lighting));
+        EXPECT_EQ(difference(before, glSnapshot()), "") << "draw() with a shadow map";
         for (const char* name : {"points", "reference"}) {
             const RendererRow* row = renderers().find(name);
             ASSERT_TRUE((*renderer)->draw(host.view(), testing::viewOf(*world), {}, host.target(), row));

@@ -1,12 +1,17 @@
 // HostWater: a context of its own, a world on backend gl and a renderer, for tests that draw into a HostScene.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/render/fluid_view.h"
@@ -18,6 +23,21 @@ namespace rivulet::testing {
 
 // Without OpenGL a test is skipped; with RIVULET_TEST_DEVICES, as tests/run.sh sets it, it fails.
 inline bool mayLackOpenGl() { return std::getenv("RIVULET_TEST_DEVICES") == nullptr; }
+
+// Writes colours of a screen, the bottom row first, to $RIVULET_PICTURES/NAME.png, for a person to look at.
+inline void keepPicture(const char* name, const std::vector<vec4>& pixels, int width, int height) {
+    const char* folder = std::getenv("RIVULET_PICTURES");
+    if (folder == nullptr) return;
+    std::vector<uint8_t> rgba;
+    rgba.reserve(4 * pixels.size());
+    for (int y = height - 1; y >= 0; --y)
+        for (int x = 0; x < width; ++x)
+            for (int k = 0; k < 4; ++k) {
+                const float c = std::clamp(pixels[static_cast<size_t>(y * width + x)][k], 0.0F, 1.0F);
+                rgba.push_back(k == 3 ? 255 : static_cast<uint8_t>(255 * c + 0.5F));
+            }
+    EXPECT_TRUE(writePng(fmt::format("{}/{}.png", folder, name), rgba, width, height));
+}
 
 // A block of water that is about to fall.
 inline FluidParams hostWater() {

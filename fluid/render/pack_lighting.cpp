@@ -1,0 +1,75 @@
+#include "fluid/render/pack_lighting.h"
+
+#include <fmt/format.h>
+#include <rivulet_glad/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "engine/gpu/host_state.h"
+#include "fluid/render/host_view.h"
+
+namespace rivulet {
+namespace {
+
+static_assert(std::size(decltype(FrameParams::hostLights){}) == kMostHostLights + 1);
+
+Status usable(const HostShadow& s) {
+    if (s.texture == 0) return ok();
+    if (!isFinite(s.projection) || !std::isfinite(s.bias)) return badInput("HostShadow::projection or bias has a value that is not finite");
+    if (glIsTexture(s.texture) == GL_FALSE)
+        return badInput(fmt::format("shadow map {} is not a texture of the current context", s.texture));
+    GLint width = 0;
+    if (gpu::targetOfTexture(s.texture) == GL_TEXTURE_2D) glGetTextureLevelParameteriv(s.texture, 0, GL_TEXTURE_WIDTH, &width);
+    if (width == 0)
+        return badInput(
+            fmt::format("shadow map {} is no GL_TEXTURE_2D with a level 0; of an array, give a layer as a texture view", s.texture));
+    return ok();
+}
+
+Status usable(const HostFog& f) {
+    if (f.kind == HostFog::none) return ok();
+    if (!rivulet::isFinite(f.colour) || f.colour.x < 0 || f.colour.y < 0 || f.colour.z < 0)
+        return badInput("HostFog::colour is negative or not finite");
+    if (f.kind == HostFog::linear && (!std::isfinite(f.start) || !std::isfinite(f.end) || !(f.end > f.start)))
+        return badInput(fmt::format("HostFog::start is {} and end {}: linear fog ends beyond its start", f.start, f.end));
+    if (f.kind != HostFog::linear && (!std::isfinite(f.density) || !(f.density >= 0)))
+        return badInput(fmt::format("HostFog::density is {}: give 0 or more", f.density));
+    return ok();
+}
+
+}  // namespace
+
+Status usable(const HostLighting& l) {
+    if (l.lights.size() > kMostHostLights)
+        return badInput(fmt::format("HostLighting has {} lights: give {} at most, the brightest", l.lights.size(), kMostHostLights));
+    for (const HostLight& light : l.lights)
+        if (!rivulet::isFinite(light.towards) || light.towards == vec3(0.0F) || !rivulet::isFinite(light.colour))
+            return badInput("HostLight::towards or colour is not finite, or the direction is 0");
+    if (Status shadow = usable(l.shadow); !shadow) return shadow;
+    return usable(l.fog);
+}
+
+void packLighting(const HostLighting& l, const FrameView& view, FrameParams& to) {
+    to.host =
+        vec4(static_cast<float>(1 + l.lights.size()), l.shadow.texture != 0 ? 1.0F : 0.0F, l.shadow.bias, l.shadow.reversed ? -1.0F : 1.0F);
+    to.hostLights[0] = to.lightDir;
+    to.hostColours[0] = to.lightColour;
+    for (size_t k = 0; k < l.lights.size(); ++k) {
+        to.hostLights[k + 1] = vec4(glm::normalize(l.lights[k].towards), 0.0F);
+        to.hostColours[k + 1] = vec4(l.lights[k].colour, 0.0F);
+    }
+    const float unit = view.unitsPerMetre;
+    mat4 toMap(0.5F);
+    toMap[3] = vec4(0.5F, 0.5F, 0.5F, 1.0F);
+    if (l.shadow.zeroToOne) toMap[2].z = 1, toMap[3].z = 0;
+    mat4 units(unit);
+    units[3].w = 1;
+    to.hostShadow = toMap * l.shadow.projection * units;
+    to.fog = vec4(static_cast<float>(l.fog.kind), l.fog.density * unit, l.fog.start / unit, l.fog.end / unit);
+    to.fogColour = vec4(l.fog.colour, 0.0F);
+    to.fogWay = vec4(l.fog.alongView ? 1.0F : 0.0F, l.fog.display ? 1.0F : 0.0F, 0.0F, 0.0F);
+}
+
+}  // namespace rivulet

@@ -83,6 +83,7 @@ void CollisionParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> kinds = {"slip", "no-slip"};
     v.choice({.name = "walls", .doc = "boundary condition of viscosity at walls; slip: none; no-slip: the fluid has the wall's velocity"},
              walls, kinds);
+    layers.visit(v);
 }
 
 void FoamParams::visit(ParamVisitor& v) {
@@ -188,6 +189,11 @@ void FluidParams::visit(ParamVisitor& v) {
              "scene's duration",
              0, 64.0e6, kLog, kFixed},
             maxParticles);
+    v.value({"maxBodySamples", "",
+             "memory for samples of bodies, of those too that are added while the world runs: a body has about one for each square of "
+             "0.9 spacings of its surface; 0 = those of the bodies at the start",
+             0, 16.0e6, kLog, kFixed},
+            maxBodySamples);
     for (const MethodRow& row : methods().rows)
         if (row.visit != nullptr) row.visit(*this, v);
     v.group({.name = "forces", .doc = "forces in addition to pressure and gravity"}, forces);

@@ -31,6 +31,7 @@ int FluidWorld::lastSubsteps() const { return impl_->clock.lastSubsteps; }
 const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
 const std::vector<BodyState>& FluidWorld::bodies() const { return impl_->bodies.states(); }
 const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodies.loads(); }
+const std::vector<uint32_t>& FluidWorld::bodyIds() const { return impl_->bodies.ids(); }
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
@@ -125,7 +126,7 @@ void FluidWorld::reset() {
         }
         w.bodies.reset();
         w.limits.fastestWall = 0;
-        w.writeStart();
+        w.writeStart(w.insideAdded());
     } catch (const std::bad_alloc&) {
         return;  // lastStep() says so
     }

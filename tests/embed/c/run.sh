@@ -48,7 +48,7 @@ for name in $shown; do
     grep -qx "$name" <<<"$declared" || { echo "$name is not in rivulet.h"; exit 1; }
 done
 
-for program in main couple faults jobs walls gl many lost overlap; do
+for program in main couple faults jobs walls bodies gl many lost overlap; do
     packages=rivulet
     case $program in gl|many|lost|overlap) packages="rivulet egl gl" ;; esac
     read -ra flags <<<"$(pkg-config --cflags --libs $packages)"
@@ -64,6 +64,7 @@ cxx=(c++ -O1)
 "$work/throws"
 "$work/jobs"
 "$work/walls"
+"$work/bodies"
 # Loaded and unloaded by dlopen. A sanitizer's own library cannot be loaded late.
 runs=(gl many lost "overlap $work")
 if [ "${cc[0]}" = cc ]; then

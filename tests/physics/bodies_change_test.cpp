@@ -340,6 +340,67 @@ TEST(BodiesChange, ProbesFollowTheirBody) {
     EXPECT_NEAR(world->stats().loads.probes[0].force.y, lift, 0.1 * lift);
 }
 
+std::vector<float> wetness(const FluidWorld& world) {
+    const WetnessView view = world.wetness();
+    return world.device().readAll<float>(*view.values, view.surface->points.size());
+}
+std::vector<float> wetnessOf(const FluidWorld& world, const SolidRef& ref) {
+    const WetSolid* solid = world.wetness().surface->find(ref);
+    if (solid == nullptr) return {};
+    const std::vector<float> all = wetness(world);
+    return {all.begin() + solid->firstPoint, all.begin() + solid->firstPoint + solid->points};
+}
+size_t wetPoints(const std::vector<float>& values) {
+    return static_cast<size_t>(std::ranges::count_if(values, [](float v) { return v > 0.1F; }));
+}
+
+// Of what stays, whatever comes and goes beside it, each point keeps its value; what is added is dry.
+TEST(BodiesChange, WhatIsWetStaysWet) {
+    auto device = cpu();
+    FluidParams p = pool(0.1F);
+    p.wetness.on = true;
+    p.wetness.dries = 1.0e4F;
+    p.wetness.runs = 0;
+    const VoxelField post = test::baked(test::makeBox(vec3(0.4F, 0.0F, 0.4F), vec3(0.48F, 0.4F, 0.48F)), 0.25F * kSpacing, kSpacing),
+                     still = test::baked(test::makeBox(vec3(0.02F, 0.0F, 0.02F), vec3(0.1F, 0.4F, 0.1F)), 0.25F * kSpacing, kSpacing),
+                     finer = test::baked(test::makeBox(vec3(0.02F, 0.0F, 0.02F), vec3(0.1F, 0.4F, 0.1F)), 0.2F * kSpacing, kSpacing);
+    const Body low = boxAt(vec3(0.15F, 0.06F, 0.25F), vec3(0.1F), 0), other = boxAt(vec3(0.35F, 0.08F, 0.25F), vec3(0.1F), 0),
+               dry = boxAt(vec3(0.25F, 0.5F, 0.25F), vec3(0.1F), 0);
+    auto world = makeWorld(*device, p, {.field = &still, .rigid = {{&post, {}}}, .bodies = {low, other}});
+    run(*world, 4);
+    const std::vector<float> onOther = wetnessOf(*world, {ProbeOn::body, 1}), onPost = wetnessOf(*world, {ProbeOn::rigid, 0}),
+                             onStill = wetnessOf(*world, {ProbeOn::still, 0});
+    ASSERT_GT(wetPoints(onOther), 50U);
+    ASSERT_GT(wetPoints(onPost), 20U);
+    ASSERT_GT(wetPoints(onStill), 20U);
+    add(*world, dry);
+    ASSERT_TRUE(world->removeBody(0));
+    EXPECT_EQ(wetnessOf(*world, {ProbeOn::body, 0}), onOther);
+    EXPECT_EQ(wetPoints(wetnessOf(*world, {ProbeOn::body, 1})), 0U);
+    EXPECT_FALSE(wetnessOf(*world, {ProbeOn::body, 1}).empty());
+    EXPECT_EQ(wetnessOf(*world, {ProbeOn::rigid, 0}), onPost);
+    // A wall that comes before it in the list, and the static one baked again with other voxels.
+    const VoxelField above = test::baked(test::makeBox(vec3(0.2F, 0.5F, 0.02F), vec3(0.3F, 0.6F, 0.1F)), 0.25F * kSpacing, kSpacing);
+    ASSERT_TRUE(world->setWalls({.field = &finer, .rigid = {{&above, {}}, {&post, {}}}}));
+    EXPECT_EQ(wetnessOf(*world, {ProbeOn::rigid, 1}), onPost);
+    EXPECT_EQ(wetPoints(wetnessOf(*world, {ProbeOn::rigid, 0})), 0U);
+    EXPECT_EQ(wetnessOf(*world, {ProbeOn::body, 0}), onOther);
+    const WetSurface& surface = *world->wetness().surface;
+    const WetSolid& again = *surface.find({ProbeOn::still, 0});
+    const std::vector<float> values = wetnessOf(*world, {ProbeOn::still, 0});
+    size_t wet = 0;
+    for (size_t k = 0; k < values.size(); ++k) {
+        const float y = surface.points[again.firstPoint + k].place.y;
+        if (y < 0.06F) wet += values[k] > 0.5F ? 1 : 0;
+        if (y > 0.25F) EXPECT_EQ(values[k], 0.0F);
+    }
+    EXPECT_GT(wet, wetPoints(onStill) / 3);
+    run(*world, 2);
+    EXPECT_GT(wetPoints(wetnessOf(*world, {ProbeOn::body, 0})), 50U);
+    ASSERT_TRUE(world->setWalls({}));
+    EXPECT_TRUE(wetnessOf(*world, {ProbeOn::rigid, 0}).empty());
+}
+
 // What the water does not meet is not in it: the water is bit for bit that of a world without the body, and the body falls freely.
 TEST(BodiesChange, ABodyThatDoesNotMeetTheWaterFallsThroughIt) {
     auto device = cpu();

@@ -38,6 +38,7 @@ Status FluidWorld::setWalls(const Solids& solids, std::span<const Pose> poses, b
     if (Status done = w.solids.replace(solids, now, w.params, w.traits.threadDefines()); !done) return done;
     w.probeTargets = std::move(targets);
     if (wet) w.wet = std::move(wet);
+    w.change();
     w.solidsChanged = true;
     w.posesBefore.clear();
     if (w.sleep) w.sleep->disturbAll(w.clock.time);

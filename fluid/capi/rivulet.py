@@ -445,7 +445,7 @@ class World(_Handle):
         return (state, load) if inside.value else None
 
     def add_body(self, body):
-        """Adds a Body while the world runs, within the memory of fluid.maxBodySamples; returns its id. One with a mesh is made ready beside the
+        """Adds a Body while the world runs, within the memory of fluid.bodies.maxSamples; returns its id. One with a mesh is made ready beside the
         frames, and is in the world from a later step on."""
         id = c_uint32()
         self._checked("world_add_body", self._pointer, body._c, id)

@@ -168,7 +168,7 @@ RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet
 
 /* The states of the bodies now, in the order of rivulet_world_body_ids; `count` must be their number. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
-/* Bodies that come and go while the world runs, within the memory of fluid.maxBodySamples. Ids are as those of walls; those of
+/* Bodies that come and go while the world runs, within the memory of fluid.bodies.maxSamples. Ids are as those of walls; those of
    rivulet_world_options have their index. A body with a mesh is made ready beside the frames, on one core: it is in the world from the step
    on before which that ended, others at once. Water inside its mesh is then removed, and the log reports the number of particles. The other
    bodies keep their states. After a reset it is where it was added; particles of t = 0 inside it are left out. A saved state can be

@@ -250,7 +250,7 @@ TEST(BodiesChange, WhatDoesNotFitIsRefused) {
     auto plain = makeWorld(*device, p, {.field = &wall});
     const Body good = boxAt(vec3(0.15F, 0.4F, 0.25F), vec3(0.1F), 500);
     expectRefused(world->addBody(boxAt(vec3(0.4F, 0.2F, 0.25F), vec3(0.1F), 500)), "inside a wall");
-    expectRefused(world->addBody(boxAt(vec3(0.2F, 0.5F, 0.25F), vec3(0.3F), 500)), "fluid.maxBodySamples");
+    expectRefused(world->addBody(boxAt(vec3(0.2F, 0.5F, 0.25F), vec3(0.3F), 500)), "fluid.bodies.maxSamples");
     Body wrong = good;
     wrong.shape.inertia = vec3(0.0F);
     expectRefused(world->addBody(wrong), "no inertia");
@@ -270,7 +270,7 @@ TEST(BodiesChange, WhatDoesNotFitIsRefused) {
     EXPECT_TRUE(waterOf(*world) == waterOf(*plain)) << "nothing was changed by what was refused";
     p.maxBodySamples = 0;
     auto none = makeWorld(*device, p);
-    expectRefused(none->addBody(good), "fluid.maxBodySamples of at least");
+    expectRefused(none->addBody(good), "fluid.bodies.maxSamples of at least");
     p.maxBodySamples = 10;
     EXPECT_FALSE(FluidWorld::create(*device, p, {.bodies = {good}}, {}));
 }

@@ -64,7 +64,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
     if (params.maxBodySamples > 0) {
         const auto room = static_cast<uint32_t>(params.maxBodySamples);
         if (room < b.sampleCount_)
-            return badInput(fmt::format("fluid.maxBodySamples is {}, but the bodies at the start have {} samples: increase it, or set 0",
+            return badInput(fmt::format("fluid.bodies.maxSamples is {}, but the bodies at the start have {} samples: increase it, or set 0",
                                         room, b.sampleCount_));
         b.sampleCount_ = room;
     }
@@ -194,7 +194,7 @@ Status BodyPasses::add(const Body& body, uint32_t id, const FluidParams& params)
     for (size_t k = 0; k < bodies_.size(); ++k) held += samplesOf(k);
     if (count > sampleCount_ - held)
         return badInput(
-            fmt::format("the body has {} samples, and there is room for {}: create the world with fluid.maxBodySamples of at least {}",
+            fmt::format("the body has {} samples, and there is room for {}: create the world with fluid.bodies.maxSamples of at least {}",
                         count, sampleCount_ - held, uint64_t{held} + count));
     if (std::ranges::find(ids_, id) != ids_.end() || id == UINT32_MAX) return badInput(fmt::format("there is a body {} already", id));
     if (host_.added == nullptr) return badInput("the host of the bodies has no function added: it cannot learn of another body");

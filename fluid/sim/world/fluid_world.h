@@ -105,7 +105,7 @@ class FluidWorld {
     Status mayChangeWalls() const;  // the first of these
     Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
 
-    // Bodies that are added and removed while the world runs, within fluid.maxBodySamples; the others keep their states and loads. Those of
+    // Bodies that are added and removed while the world runs, within fluid.bodies.maxSamples; the others keep their states and loads. Those of
     // Solids::bodies have the ids 0, 1, ..., others `id`, or one above all before. `body.state`: now, and after a reset. Particles inside
     // it are removed as by setWalls; without BodyShape::distance, or without `removeInside`, its samples push them out, hard. A saved state
     // can be restored where the same bodies are. Error (badInput): as create; no room; a sample in a wall; a BodyHost without `added`; no

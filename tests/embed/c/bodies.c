@@ -28,7 +28,7 @@ static rivulet_body crate_of(const rivulet_mesh* mesh, float x, float y, float z
 static rivulet_world* pool(rivulet_context* context, const char* more, const rivulet_body_host* host) {
     char json[512];
     snprintf(json, sizeof json,
-             "{\"fluid\": {\"method\": \"pbf\", \"spacing\": 0.025, \"box\": {\"max\": [0.5, 0.8, 0.5]}, \"maxBodySamples\": 1500%s, "
+             "{\"fluid\": {\"method\": \"pbf\", \"spacing\": 0.025, \"box\": {\"max\": [0.5, 0.8, 0.5]}, \"bodies\": {\"maxSamples\": 1500}%s, "
              "\"blocks\": "
              "[{\"max\": [0.5, 0.2, 0.5]}]}}",
              more);

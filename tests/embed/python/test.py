@@ -214,7 +214,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     corners = np.array([(x, y, z) for x in (-0.1, 0.1) for y in (-0.06, 0.06) for z in (-0.1, 0.1)])
     faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
     crate = rivulet.Body(mesh=rivulet.Mesh(corners, faces), density=500, position=(0.3, 0.6, 0.3), velocity=(0, -0.5, 0))
-    roomy = {"fluid": {**pool["fluid"], "maxBodySamples": 1000}}
+    roomy = {"fluid": {**pool["fluid"], "bodies": {"maxSamples": 1000}}}
     with context.world(roomy) as world:
         first, second = world.add_body(crate), world.add_body(rivulet.Body(cube, 3, (0.016,) * 3, 0.18**3, (0.15, 0.8, 0.15), layers=2, meets=2))
         assert (first, second) == (0, 1) and list(world.body_ids()) == [1]

@@ -1,8 +1,10 @@
 // rivulet.h: drawing.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -200,9 +202,14 @@ rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid
             return badInput(fmt::format("solid is {}: use RIVULET_WALL or RIVULET_BODY", solid));
         const bool wall = solid == RIVULET_WALL;
         const std::vector<SolidRef> walls = world->walls.solids().colliders;
-        const size_t count = wall ? walls.size() : world->world->bodies().size();
-        if (index >= count) return badInput(fmt::format("there is no {} {}: the world has {}", wall ? "wall" : "body", index, count));
-        const SolidRef ref = wall ? walls[index] : SolidRef{ProbeOn::body, static_cast<uint32_t>(index)};
+        if (wall && index >= walls.size()) return badInput(fmt::format("there is no wall {}: the world has {}", index, walls.size()));
+        SolidRef ref = wall ? walls[index] : SolidRef{};
+        if (!wall) {
+            const Result<std::optional<size_t>> place = world->bodies.placeOf(static_cast<uint32_t>(std::min<size_t>(index, UINT32_MAX)));
+            if (!place) return place.error();
+            if (!*place) return badInput(fmt::format("body {} is not in the world yet", index));
+            ref = {ProbeOn::body, static_cast<uint32_t>(**place)};
+        }
         const WetSolid* found = view.surface->find(ref);
         if (found == nullptr && wall)
             return badInput(fmt::format("wall {} does not get wet: none of its surface is inside fluid.box", index));

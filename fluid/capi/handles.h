@@ -10,6 +10,7 @@
 
 #include "engine/core/jobs.h"
 #include "engine/gpu/host_state.h"
+#include "fluid/capi/bodies.h"
 #include "fluid/capi/callbacks.h"
 #include "fluid/capi/rivulet.h"
 #include "fluid/capi/walls.h"
@@ -63,23 +64,13 @@ struct WorldParams {
     void visitSources(ParamVisitor& v);  // emitters, sinks and dry volumes
 };
 
-// A host's functions as a BodyHost.
-struct BodyCallbacks {
-    rivulet_context* context = nullptr;
-    rivulet_body_host host{};
-    std::string thrown;  // by one of them, in this call; the bodies then stay where they are
-    std::vector<rivulet_body_load> loads;
-    std::vector<rivulet_body_state> states;
-};
-
 }  // namespace rivulet::capi
 
 struct rivulet_world {
     rivulet_context* context = nullptr;
     rivulet::capi::WorldParams params;
     rivulet::capi::Walls walls;
-    std::unique_ptr<rivulet::capi::BodyCallbacks> callbacks;
-    std::unique_ptr<rivulet::FreeBodies> free;
+    rivulet::capi::Bodies bodies;
     std::unique_ptr<rivulet::FluidWorld> world;
     rivulet::FluidUpload upload;
     double deviceMs = 0;  // the context's, when this was last stepped

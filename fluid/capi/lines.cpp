@@ -108,7 +108,7 @@ rivulet_status rivulet_world_lines(const rivulet_world* world,
             lines->axes(pose, 4 * fluid.spacing);
         }
         for (size_t k = 0; k < of.bodies().size(); ++k) {
-            lines->begin(RIVULET_PART_BODY, k);
+            lines->begin(RIVULET_PART_BODY, of.bodyIds()[k]);
             lines->axes(of.bodies()[k].pose, 4 * fluid.spacing);
         }
         world->context->hostLog.later([lines, line, user] {

@@ -53,12 +53,14 @@ class _ContextOptions(Structure):
 class _Mesh(Structure):
     _fields_ = [("size", c_size_t), ("positions", c_void_p), ("vertices", c_size_t), ("indices", c_void_p), ("indices_count", c_size_t),
                 ("uvs", c_void_p), ("friction", c_float), ("restitution", c_float), ("moves", c_uint32), ("resolution", c_int32),
-                ("position", c_float * 3), ("rotation", c_float * 4)]
+                ("position", c_float * 3), ("rotation", c_float * 4), ("reach_low", c_float * 3), ("reach_high", c_float * 3),
+                ("layers", c_uint32), ("meets", c_uint32)]
 
 
 class _Body(Structure):
     _fields_ = [("size", c_size_t), ("samples", c_void_p), ("samples_count", c_size_t), ("mass", c_float), ("inertia", c_float * 3),
-                ("volume", c_float), ("position", c_float * 3), ("rotation", c_float * 4)]
+                ("volume", c_float), ("position", c_float * 3), ("rotation", c_float * 4), ("mesh", POINTER(_Mesh)), ("density", c_float),
+                ("velocity", c_float * 3), ("spin", c_float * 3), ("layers", c_uint32), ("meets", c_uint32)]
 
 
 _POSE = np.dtype([("position", np.float32, 3), ("rotation", np.float32, 4)])
@@ -82,7 +84,7 @@ _LOADS = np.dtype([("name", "S64"), ("time", np.float64), ("seconds", np.float64
 
 
 class _BodyHost(Structure):
-    _fields_ = [("size", c_size_t), ("user", c_void_p), ("advance", _ADVANCE), ("reset", _RESET)]
+    _fields_ = [("size", c_size_t), ("user", c_void_p), ("advance", _ADVANCE), ("reset", _RESET), ("added", c_void_p), ("removed", c_void_p)]
 
 
 class _WorldOptions(Structure):
@@ -156,7 +158,10 @@ for _name, _arguments in {
         "context_times": [c_void_p, POINTER(_PassTime), c_size_t, POINTER(c_size_t)], "world_create": [c_void_p, POINTER(_WorldOptions), _handle],
         "world_step": [c_void_p, POINTER(_Inputs), c_double], "world_reset": [c_void_p], "world_set": [c_void_p, c_char_p],
         "world_stats": [c_void_p, POINTER(_Stats)], "world_particles": [c_void_p, POINTER(_Particles)],
-        "world_bodies": [c_void_p, c_void_p, c_size_t], "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
+        "world_bodies": [c_void_p, c_void_p, c_size_t], "world_add_body": [c_void_p, POINTER(_Body), POINTER(c_uint32)],
+        "world_remove_body": [c_void_p, c_uint32], "world_body": [c_void_p, c_uint32, POINTER(c_int32), c_void_p, c_void_p],
+        "world_body_ids": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
+        "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_cast": [c_void_p, c_void_p, c_size_t, c_void_p], "world_heights": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_wetness": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_set_attribute": [c_void_p, ctypes.c_uint32, c_void_p, c_void_p, c_size_t],
@@ -322,14 +327,18 @@ class Mesh:
 
 class Body:
     """A rigid body in the fluid. samples (m, n x 3): points half a spacing below its surface, about a spacing apart, relative to its centre of
-    mass along its principal axes; mass (kg; 0: fixed), inertia (kg m^2, about those axes), volume (m^3); its pose at t = 0: position (m),
-    rotation (x y z w)."""
+    mass along its principal axes; mass (kg; 0: fixed), inertia (kg m^2, about those axes), volume (m^3). Or mesh, a closed Mesh, and density
+    (kg/m^3): these are then found from it, and the body's frame is that of the mesh. Its pose at t = 0 or when it is added: position (m),
+    rotation (x y z w); velocity (m/s), spin (rad/s). layers, meets: as rivulet.h, whether the water meets it."""
 
-    def __init__(self, samples, mass, inertia, volume, position=(0, 0, 0), rotation=(0, 0, 0, 1)):
-        self.samples = _array(samples, (-1, 3), "samples")
-        self._c = _struct(_Body, samples=_at(self.samples), samples_count=len(self.samples), mass=mass, volume=volume,
+    def __init__(self, samples=None, mass=0.0, inertia=(0, 0, 0), volume=0.0, position=(0, 0, 0), rotation=(0, 0, 0, 1), mesh=None, density=0.0,
+                 velocity=(0, 0, 0), spin=(0, 0, 0), layers=0, meets=0):
+        self.samples, self.mesh = _array(samples, (-1, 3), "samples"), mesh
+        self._c = _struct(_Body, samples=_at(self.samples), samples_count=0 if samples is None else len(self.samples), mass=mass, volume=volume,
                         inertia=tuple(_array(inertia, (3,), "inertia")), position=tuple(_array(position, (3,), "position")),
-                        rotation=tuple(_array(rotation, (4,), "rotation")))
+                        rotation=tuple(_array(rotation, (4,), "rotation")), mesh=None if mesh is None else ctypes.pointer(mesh._c),
+                        density=density, velocity=tuple(_array(velocity, (3,), "velocity")), spin=tuple(_array(spin, (3,), "spin")),
+                        layers=_whole(layers, 0, 65535, "layers"), meets=_whole(meets, 0, 65535, "meets"))
 
 
 def _view(address, dtype, count):
@@ -353,7 +362,7 @@ class World(_Handle):
     _kind = "world"
 
     def __init__(self, context, scene, walls, bodies, body_host, particles, velocities):
-        self._context, self._bodies, host = context, len(bodies), None
+        self._context, host = context, None
         placed, moving = _array(particles, (-1, 3), "particles"), _array(velocities, (-1, 3), "velocities")
         count = 0 if placed is None else len(placed)
         if moving is not None and len(moving) != count:
@@ -457,10 +466,35 @@ class World(_Handle):
         return self._attributes.index(name)
 
     def bodies(self):
-        """The states of the bodies now: an array with the fields position (m), rotation (x y z w), velocity (m/s) and spin (rad/s)."""
-        states = np.zeros(self._bodies, _STATE)
-        _call("world_bodies", self._pointer, _at(states), self._bodies)
+        """The states of the bodies now, in the order of body_ids: an array with the fields position (m), rotation (x y z w), velocity (m/s) and
+        spin (rad/s)."""
+        states = np.zeros(len(self.body_ids()), _STATE)
+        _call("world_bodies", self._pointer, _at(states), len(states))
         return states
+
+    def body_ids(self):
+        """The ids of the bodies in the world: those given at the start have their index."""
+        count = c_size_t()
+        _call("world_body_ids", self._pointer, None, 0, ctypes.byref(count))
+        ids = np.zeros(count.value, np.uint32)
+        _call("world_body_ids", self._pointer, _at(ids), len(ids), ctypes.byref(count))
+        return ids
+
+    def body(self, id):
+        """(state, load) of a body, with the fields of bodies() and force (N), torque (N m); None while it is made ready."""
+        state, load, inside = np.zeros((), _STATE), np.zeros((), _LOAD), c_int32()
+        _call("world_body", self._pointer, _whole(id, 0, 2**32 - 1, "id"), ctypes.byref(inside), _at(state), _at(load))
+        return (state, load) if inside.value else None
+
+    def add_body(self, body):
+        """Adds a Body while the world runs, within the memory of fluid.bodies.maxSamples; returns its id. One with a mesh is made ready beside the
+        frames, and is in the world from a later step on."""
+        id = c_uint32()
+        self._checked("world_add_body", self._pointer, body._c, id)
+        return id.value
+
+    def remove_body(self, id):
+        self._checked("world_remove_body", self._pointer, _whole(id, 0, 2**32 - 1, "id"))
 
     def sample(self, places):
         """The water at places (n, 3), m: an array with the fields density (over the rest density; 0 in air), velocity (m/s) and gradient

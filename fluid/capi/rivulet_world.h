@@ -23,30 +23,38 @@ typedef struct rivulet_mesh {
     const float* uvs;  /* 2 a vertex; for skins */
     float friction;    /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
     float restitution; /* of a wall: 0 to 1; negative: that of fluid.collision */
-    /* Of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 2: deforms with rivulet_inputs.shapes, of those
-       that are given when the world is created; 0: stands still. */
+    /* Of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 2: deforms with rivulet_inputs.shapes;
+       0: stands still. */
     uint32_t moves;
     int32_t resolution; /* of a wall: voxels along its longest side; 0: voxels of a quarter of the fluid's spacing */
     rivulet_pose pose;  /* of a wall that moves: at t = 0 */
     /* m, the low and the high corner of a box in which a wall that deforms always is; voxels are kept for all of it, `resolution` of them
        along its longest side. All 0: the box of its positions, longer by half of its longest side in each direction. */
     float reach_low[3], reach_high[3];
+    /* Of a wall: the collision layers that it is on (bit k is layer k, of 16; 0: the first), and those that it meets (0: all). The water,
+       with fluid.collision.layers and .meets, passes through it unless each is on a layer that the other meets. */
+    uint32_t layers, meets;
 } rivulet_mesh;
 
-/* A floating body, coupled to the fluid both ways. The origin of its frame is its centre of mass, its axes are the principal axes. */
+/* A floating body, coupled to the fluid both ways. The origin of its frame is its centre of mass, its axes are the principal axes. Or it is
+   given as a closed mesh with a density and without samples: mass, inertia and volume are then found from these, and the frame is that of
+   the mesh. */
 typedef struct rivulet_body {
     size_t size;
-    const float* samples; /* m, 3 each: points half a spacing below its surface, about a spacing apart */
+    const float* samples; /* m, 3 each: points half a spacing below its surface, about a spacing apart; NULL: those of mesh */
     size_t samples_count;
-    float mass;       /* kg; 0: the body is fixed */
-    float inertia[3]; /* kg m^2 */
-    float volume;     /* m^3 */
-    rivulet_pose pose;
-    const rivulet_mesh* mesh; /* its surface, in its own frame, for fluid.wetness; NULL: it does not get wet */
+    float mass;                 /* kg; 0: the body is fixed */
+    float inertia[3];           /* kg m^2 */
+    float volume;               /* m^3 */
+    rivulet_pose pose;          /* of its frame, at t = 0 or when it is added */
+    const rivulet_mesh* mesh;   /* its surface, in its frame; NULL: it does not get wet (fluid.wetness), and no water makes room for it */
+    float density;              /* kg/m^3, without samples */
+    float velocity[3], spin[3]; /* as of rivulet_body_state, at t = 0 or when it is added */
+    uint32_t layers, meets;     /* as of rivulet_mesh: whether the water meets it. A body_host knows which bodies meet each other */
 } rivulet_body;
 typedef struct rivulet_body_state {
     rivulet_pose pose;
-    float velocity[3], spin[3]; /* m/s; rad/s; in world axes */
+    float velocity[3], spin[3]; /* m/s, of the centre of mass; rad/s; in world axes */
 } rivulet_body_state;
 typedef struct rivulet_body_load {
     double force[3], torque[3]; /* N; N m about the centre of mass; in world axes */
@@ -60,6 +68,9 @@ typedef struct rivulet_body_host {
                     size_t count);
     void (*reset)(void* user, const rivulet_body_state* states,
                   size_t count); /* sets the bodies to these states: those of t = 0 after a reset */
+    /* A body is in the world from now on, and the last of the next states; or it is not any more. May be NULL. */
+    void (*added)(void* user, uint32_t id, const rivulet_body_state* state);
+    void (*removed)(void* user, uint32_t id);
 } rivulet_body_host;
 
 typedef struct rivulet_world_options {
@@ -124,7 +135,8 @@ RIVULET_API rivulet_status rivulet_world_set(rivulet_world* world, const char* a
    which is greater than all before. A wall is baked beside the frames, on one core: 0.1 to 5 s. It acts from the step on before which its
    bake ended; particles that are inside it then are removed, and the log reports their number. The poses of rivulet_inputs are those of all
    walls that move, in the order of their ids, whether they are baked yet or not. A wall that stands still and was given at creation acts
-   until the others of these are baked without it; all others end with the call. With fluid.wetness.on walls do not change. */
+   until the others of these are baked without it; all others end with the call. With fluid.wetness.on those that stay keep their wetness.
+   A wall that the water does not meet only has an id. */
 typedef enum rivulet_wall_state {
     RIVULET_WALL_BAKES = 0, /* it does not act yet */
     RIVULET_WALL_ACTS = 1,
@@ -136,7 +148,7 @@ RIVULET_API rivulet_status rivulet_world_remove_wall(rivulet_world* world, uint3
 RIVULET_API rivulet_status rivulet_world_wall(const rivulet_world* world, uint32_t id, int32_t* state, rivulet_error* why);
 /* Sets all emitters, sinks and dry volumes: {"emitters": [...], "sinks": [...], "dry": [...]}, as in the world's json; a list that is
    absent is empty. A dry volume, such as the inside of a boat, has no water: the picture is cut there, and particles in it are removed
-   after each step. With `body`, a body's index, it moves with it. With another number of emitters or sinks than before, all emitters begin
+   after each step. With `body`, a body's id, it moves with it. With another number of emitters or sinks than before, all emitters begin
    anew. Emitters spawn into free memory: fluid.maxParticles reserves it. RIVULET_BAD_INPUT: another number in a world with skins_bring
    above 0, or with fluid.grid linked_list. */
 RIVULET_API rivulet_status rivulet_world_set_sources(rivulet_world* world, const char* json, rivulet_error* why);
@@ -163,8 +175,23 @@ RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet
 RIVULET_API rivulet_status rivulet_world_set_attribute(rivulet_world* world, uint32_t attribute, const uint32_t* ids, const float* values,
                                                        size_t count, rivulet_error* why);
 
-/* The states of the bodies now, in their order; `count` must be their number. */
+/* The states of the bodies now, in the order of rivulet_world_body_ids; `count` must be their number. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
+/* Bodies that come and go while the world runs, within the memory of fluid.bodies.maxSamples. Ids are as those of walls; those of
+   rivulet_world_options have their index. A body with a mesh is made ready beside the frames, on one core: it is in the world from the step
+   on before which that ended, others at once. Water inside its mesh is then removed, and the log reports the number of particles. The other
+   bodies keep their states. After a reset it is where it was added; particles of t = 0 inside it are left out. A saved state can be
+   restored where the same bodies are. RIVULET_BAD_INPUT: no room; inside a wall; as rivulet_world_create; a probe measures the
+   removed one, or a dry volume moves with it. */
+RIVULET_API rivulet_status rivulet_world_add_body(rivulet_world* world, const rivulet_body* body, uint32_t* id, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_world_remove_body(rivulet_world* world, uint32_t id, rivulet_error* why);
+/* `inside`: 1 if it is in the world; 0: not yet, and state and load are as they were. These may be NULL; the load is of the last substep.
+   RIVULET_FAILED: it could not be made ready or added, and why. RIVULET_BAD_INPUT: there is no such body. */
+RIVULET_API rivulet_status rivulet_world_body(const rivulet_world* world, uint32_t id, int32_t* inside, rivulet_body_state* state,
+                                              rivulet_body_load* load, rivulet_error* why);
+/* The ids of the bodies in the world, at most `capacity`; `count`: of all. `ids` may be NULL. */
+RIVULET_API rivulet_status rivulet_world_body_ids(const rivulet_world* world, uint32_t* ids, size_t capacity, size_t* count,
+                                                  rivulet_error* why);
 
 /* Saves and restores all that the next step depends on; on the cpu the restored run is bit-identical. */
 RIVULET_API rivulet_status rivulet_world_save(rivulet_world* world, const char* path, rivulet_error* why);

@@ -19,17 +19,31 @@ Result<Pose> soundPose(const rivulet_pose& given, const std::string& name) {
     return pose;
 }
 
+VoxelFieldOptions voxelOptions(const Bounds& bounds, int resolution, float spacing, size_t memoryLimit) {
+    const vec3 size = bounds.size();
+    const float side = std::max({size.x, size.y, size.z});
+    VoxelFieldOptions options;
+    options.resolution = resolution > 0 ? resolution : std::clamp(static_cast<int>(std::ceil(4 * side / spacing)), 2, 512);
+    options.band = options.padding = 2 * spacing;  // a particle finds the field before it touches the wall
+    if (memoryLimit > 0) options.memoryLimit = memoryLimit;
+    return options;
+}
+
+Result<LayersParams> layersOf(uint32_t layers, uint32_t meets, const std::string& name) {
+    constexpr auto kAll = static_cast<uint32_t>(LayersParams::kAll);
+    if (layers > kAll || meets > kAll)
+        return badInput(fmt::format("{}: layers is {:#x} and meets {:#x}; there are 16 layers, bits 0 to 15", name, layers, meets));
+    LayersParams read;
+    if (layers != 0) read.layers = static_cast<int>(layers);
+    if (meets != 0) read.meets = static_cast<int>(meets);
+    return read;
+}
+
 VoxelFieldOptions Walls::optionsFor(std::span<const BakedMesh> meshes, int resolution) const {
     Bounds bounds;
     for (const BakedMesh& mesh : meshes)
         for (const vec3& p : mesh.positions) bounds.add(p);
-    const vec3 size = bounds.size();
-    const float side = std::max({size.x, size.y, size.z});
-    VoxelFieldOptions options;
-    options.resolution = resolution > 0 ? resolution : std::clamp(static_cast<int>(std::ceil(4 * side / spacing_)), 2, 512);
-    options.band = options.padding = 2 * spacing_;  // a particle finds the field before it touches the wall
-    if (memoryLimit_ > 0) options.memoryLimit = memoryLimit_;
-    return options;
+    return voxelOptions(bounds, resolution, spacing_, memoryLimit_);
 }
 
 // `own`: not shared with another wall, so that probes measure each, while there are enough numbers.
@@ -56,6 +70,10 @@ Result<Walls::Wall> Walls::read(const rivulet_mesh& wall, const std::string& nam
     Wall made;
     if (wall.moves > 2) return badInput(fmt::format("{}.moves is {}: use 0, 1 or 2", name, wall.moves));
     made.moves = wall.moves == 1;
+    made.deforms = wall.moves == 2;
+    const Result<LayersParams> layers = layersOf(wall.layers, wall.meets, name);
+    if (!layers) return layers.error();
+    made.meets = water_.meet(*layers);
     made.resolution = wall.resolution;
     if (made.moves) {
         const Result<Pose> pose = soundPose(wall.pose, name + ".pose");
@@ -88,7 +106,7 @@ std::vector<BakedMesh> Walls::standing(int& finest) const {
     return meshes;
 }
 
-Result<DeformingField> Walls::deformingOf(const Wall& wall, const rivulet_mesh& given) const {
+Result<std::function<Result<DeformingField>()>> Walls::deformingOf(const Wall& wall, const rivulet_mesh& given) const {
     Bounds reach{vectorOf(given.reach_low), vectorOf(given.reach_high)};
     if (!isSet(given.reach_low) && !isSet(given.reach_high)) {
         reach = {};
@@ -101,14 +119,31 @@ Result<DeformingField> Walls::deformingOf(const Wall& wall, const rivulet_mesh& 
         return badInput(fmt::format("reach_low and reach_high are no box of finite corners, at most {} m from 0", kMostDistance));
     std::vector<BakedMesh> box(1);
     box[0].positions = {reach.min, reach.max};
-    VoxelFieldOptions options = optionsFor(box, given.resolution);
-    options.surfaces = std::span(&wall.surface, 1);
-    const MeshView view{.positions = wall.mesh.positions, .indices = wall.mesh.indices, .normals = {}, .uvs = {}};
-    return DeformingField::create(std::span(&view, 1), reach, options);
+    return std::function<Result<DeformingField>()>([mesh = wall.mesh, reach, wanted = optionsFor(box, given.resolution)] {
+        VoxelFieldOptions options = wanted;
+        options.surfaces = std::span(&mesh.surface, 1);
+        const MeshView view{.positions = mesh.positions, .indices = mesh.indices, .normals = {}, .uvs = {}};
+        return DeformingField::create(std::span(&view, 1), reach, options);
+    });
 }
 
-Status Walls::begin(const rivulet_world_options& o, float spacing, size_t memoryLimit, const Jobs& jobs) {
-    spacing_ = spacing;
+bool Walls::takeShape(Wall& wall) {
+    Result<DeformingField> field = wall.bakeShape->take();
+    wall.bakeShape.reset();
+    const auto fails = [&wall](const Error& error) {
+        wall.failure = error.message;
+        return false;
+    };
+    if (!field) return fails(field.error());
+    // It may have been bent while it was baked.
+    if (const Result<DeformingField::Change> bent = field->update(wall.shape); !bent) return fails(bent.error());
+    wall.deforming = std::make_unique<DeformingField>(std::move(*field));
+    return true;
+}
+
+Status Walls::begin(const rivulet_world_options& o, const FluidParams& fluid, size_t memoryLimit, const Jobs& jobs) {
+    spacing_ = fluid.spacing;
+    water_ = fluid.collision.layers;
     memoryLimit_ = memoryLimit;
     jobs_ = jobs;
     if (o.walls_count > 0 && o.walls == nullptr) return badInput("walls is NULL, and walls_count is not 0");
@@ -133,15 +168,19 @@ Status Walls::begin(const rivulet_world_options& o, float spacing, size_t memory
         at += input->size;
         Result<Wall> wall = read(*input, name, o.walls_count <= kMostSurfaces);
         if (!wall) return wall.error();
-        wall->together = input->moves == 0;
-        if (input->moves == 2) {
-            Result<DeformingField> field = deformingOf(*wall, *input);
-            if (!field) return Error{fmt::format("{}: {}", name, field.error().message), field.error().fault};
-            wall->deforming = std::make_unique<DeformingField>(std::move(*field));
-            wall->shape = std::move(wall->mesh.positions);
+        wall->together = input->moves == 0 && wall->meets;
+        if (wall->deforms) {
+            wall->shape = wall->mesh.positions;
+            if (wall->meets) {
+                const auto bake = deformingOf(*wall, *input);
+                if (!bake) return Error{fmt::format("{}: {}", name, bake.error().message), bake.error().fault};
+                Result<DeformingField> field = (*bake)();
+                if (!field) return Error{fmt::format("{}: {}", name, field.error().message), field.error().fault};
+                wall->deforming = std::make_unique<DeformingField>(std::move(*field));
+            }
             wall->mesh = {};
         }
-        if (wall->moves) {
+        if (wall->moves && wall->meets) {
             auto field = bakeNow(std::span(&wall->mesh, 1), wall->resolution);
             if (!field) return Error{fmt::format("{}: {}", name, field.error().message), field.error().fault};
             wall->field = std::move(*field);
@@ -182,9 +221,23 @@ Solids Walls::solids() const {
 Result<uint32_t> Walls::add(const rivulet_mesh& given) {
     const Result<rivulet_mesh> input = readStruct(&given, "rivulet_mesh", "wall");
     if (!input) return input.error();
-    if (input->moves == 2) return badInput("wall.moves is 2: a wall that deforms is given when the world is created");
     Result<Wall> wall = read(*input, "wall", false);
     if (!wall) return wall.error();
+    if (!wall->meets) {
+        if (wall->deforms) wall->shape = std::move(wall->mesh.positions);
+        wall->mesh = {};
+        all_.push_back(std::move(*wall));
+        return all_.back().id;
+    }
+    if (wall->deforms) {
+        auto bake = deformingOf(*wall, *input);
+        if (!bake) return bake.error();
+        wall->shape = std::move(wall->mesh.positions);
+        wall->mesh = {};
+        wall->bakeShape = std::make_unique<Background<DeformingField>>(std::move(*bake), jobs_);
+        all_.push_back(std::move(*wall));
+        return all_.back().id;
+    }
     std::vector<BakedMesh> mesh;
     mesh.push_back(std::move(wall->mesh));
     const VoxelFieldOptions options = optionsFor(mesh, wall->resolution);
@@ -258,6 +311,12 @@ std::vector<std::string> Walls::arrive(FluidWorld& world) {
         for (Wall& w : all_) w.leaves = false;
     };
     for (Wall& w : all_) {
+        if (w.bakeShape != nullptr && w.bakeShape->done()) {
+            if (takeShape(w))
+                changed = w.arrives = true;
+            else
+                wrong.push_back(fmt::format("wall {}: {}", w.id, w.failure));
+        }
         if (w.bake == nullptr || !w.bake->done()) continue;
         Result<VoxelField> field = w.bake->take();
         w.bake.reset();
@@ -292,8 +351,14 @@ std::vector<std::string> Walls::arrive(FluidWorld& world) {
                 w.failure = set.error().message;
                 w.field.reset();
             }
+        for (Wall& w : all_)
+            if (std::exchange(w.arrives, false)) {
+                w.failure = set.error().message;
+                w.deforming.reset();
+            }
         return wrong;
     }
+    for (Wall& w : all_) w.arrives = false;
     if (before) std::erase_if(all_, [](const Wall& w) { return w.leaves; });
     return wrong;
 }
@@ -308,7 +373,7 @@ Result<rivulet_wall_state> Walls::stateOf(uint32_t id) const {
     if (w == nullptr) return badInput(fmt::format("there is no wall {}", id));
     if (!w->failure.empty()) return failed(fmt::format("wall {}: {}", id, w->failure));
     if (w->leaves) return RIVULET_WALL_LEAVES;
-    return w->bake != nullptr ? RIVULET_WALL_BAKES : RIVULET_WALL_ACTS;
+    return w->bakes() ? RIVULET_WALL_BAKES : RIVULET_WALL_ACTS;
 }
 
 size_t Walls::moving() const {
@@ -327,6 +392,7 @@ Walls::Targets Walls::targets() const {
         if (w.acts()) targets.poses.push_back(w.now);
         if (w.moves) targets.moving.push_back(w.now);
         if (w.deforming) targets.shapes.push_back(w.shape);
+        if (w.deforms) targets.deforming.push_back(w.shape);
     }
     return targets;
 }
@@ -345,12 +411,12 @@ std::vector<std::pair<size_t, Pose>> Walls::placesOfMoving(const FluidWorld& wor
 }
 
 size_t Walls::deforming() const {
-    return static_cast<size_t>(std::count_if(all_.begin(), all_.end(), [](const Wall& w) { return w.deforming != nullptr; }));
+    return static_cast<size_t>(std::count_if(all_.begin(), all_.end(), [](const Wall& w) { return w.deforms; }));
 }
 
 void Walls::deform(size_t which, const float* positions) {
     for (Wall& w : all_) {
-        if (!w.deforming || which-- > 0) continue;
+        if (!w.deforms || which-- > 0) continue;
         for (size_t k = 0; k < w.shape.size(); ++k) w.shape[k] = vectorOf(positions + 3 * k);
         return;
     }
@@ -360,7 +426,7 @@ void Walls::moveBack(const Targets& before) {
     move(before.moving);
     size_t k = 0;
     for (Wall& w : all_)
-        if (w.deforming) w.shape = before.shapes[k++];
+        if (w.deforms) w.shape = before.deforming[k++];
 }
 
 void Walls::follow(const std::vector<Pose>& poses) {

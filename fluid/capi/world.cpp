@@ -11,7 +11,6 @@
 #include "fluid/capi/drawing.h"
 #include "fluid/capi/versioned.h"
 #include "fluid/capi/walls.h"
-#include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/contradictions.h"
 #include "fluid/sim/world/host_particles.h"
 #include "fluid/sim/world/world_state.h"
@@ -60,105 +59,6 @@ Status checkScene(const WorldParams& params) {
     return ok();
 }
 
-rivulet_body_state stateOf(const BodyState& s) {
-    return {poseOf(s.pose), {s.velocity.x, s.velocity.y, s.velocity.z}, {s.spin.x, s.spin.y, s.spin.z}};
-}
-
-void toStates(std::span<const BodyState> from, std::vector<rivulet_body_state>& to) {
-    to.clear();
-    for (const BodyState& s : from) to.push_back(stateOf(s));
-}
-
-// Runs `call`, a function of the host. What it throws is kept, for the call that is under way.
-template <class Call>
-void callHost(BodyCallbacks& c, const char* name, const Call& call) {
-    const CallbackScope scope(c.context->callback);
-    try {
-        call();
-    } catch (const std::exception& e) {
-        c.thrown = fmt::format("body_host.{} threw an exception: {}", name, e.what());
-    } catch (...) {
-        c.thrown = fmt::format("body_host.{} threw an exception", name);
-    }
-}
-
-// The error of what was thrown in this call.
-Status thrown(rivulet_world& w) {
-    if (!w.callbacks || w.callbacks->thrown.empty()) return ok();
-    return failed(std::exchange(w.callbacks->thrown, {}) + "; the bodies stay where they are");
-}
-
-void advance(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
-    auto& c = *static_cast<BodyCallbacks*>(self);
-    if (!c.thrown.empty()) return;
-    c.loads.clear();
-    for (const BodyLoad& l : loads) c.loads.push_back({{l.force.x, l.force.y, l.force.z}, {l.torque.x, l.torque.y, l.torque.z}});
-    toStates(states, c.states);
-    const float g[3] = {gravity.x, gravity.y, gravity.z};
-    callHost(c, "advance", [&] { c.host.advance(c.host.user, c.loads.data(), g, seconds, c.states.data(), states.size()); });
-    if (!c.thrown.empty()) return;
-    for (size_t k = 0; k < states.size(); ++k)
-        states[k] = {poseOf(c.states[k].pose), vectorOf(c.states[k].velocity), vectorOf(c.states[k].spin)};
-}
-
-void reset(void* self, std::span<const BodyState> states) {
-    auto& c = *static_cast<BodyCallbacks*>(self);
-    toStates(states, c.states);
-    callHost(c, "reset", [&] { c.host.reset(c.host.user, c.states.data(), states.size()); });
-}
-
-Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solids) {
-    if (o.bodies_count == 0) return ok();
-    if (o.bodies == nullptr) return badInput("bodies is NULL, and bodies_count is not 0");
-    const auto* at = reinterpret_cast<const std::byte*>(o.bodies);
-    for (size_t k = 0; k < o.bodies_count; ++k) {
-        const Result<rivulet_body> input =
-            readStruct(reinterpret_cast<const rivulet_body*>(at), "rivulet_body", fmt::format("bodies[{}]", k));
-        if (!input) return input.error();
-        const rivulet_body& given = *input;
-        at += given.size;
-        if (given.samples == nullptr || given.samples_count == 0)
-            return badInput(fmt::format("bodies[{}] has no samples: give points below its surface, about a spacing apart", k));
-        Body body;
-        for (size_t i = 0; i < given.samples_count; ++i) body.shape.samples.push_back(vectorOf(given.samples + 3 * i));
-        body.shape.mass = given.mass;
-        body.shape.inertia = vectorOf(given.inertia);
-        body.shape.volume = given.volume;
-        const Result<Pose> pose = soundPose(given.pose, fmt::format("bodies[{}].pose", k));
-        if (!pose) return pose.error();
-        body.state.pose = *pose;
-        if (const std::string wrong = outside(fmt::format("bodies[{}].pose.position", k), pose->position, w.params.fluid.box);
-            !wrong.empty())
-            return badInput(wrong);
-        if (given.mesh != nullptr) {
-            const std::string name = fmt::format("bodies[{}].mesh", k);
-            const Result<rivulet_mesh> input = readStruct(given.mesh, "rivulet_mesh", name);
-            if (!input) return input.error();
-            Result<HostMesh> mesh = meshOf(*input, name);
-            if (!mesh) return mesh.error();
-            body.shape.shell = [mesh = std::move(*mesh)](float apart) { return meshShell(mesh.view(), apart); };
-        }
-        solids.bodies.push_back(std::move(body));
-    }
-    const Result<rivulet_body_host> hosting = readStruct(o.body_host, "rivulet_body_host", "body_host");
-    if (!hosting) return hosting.error();
-    const rivulet_body_host& host = *hosting;
-    if ((host.advance == nullptr) != (host.reset == nullptr))
-        return badInput("body_host has one of advance and reset: give both or neither");
-    if (host.advance == nullptr) {
-        w.free = std::make_unique<FreeBodies>(solids.bodies);
-        solids.bodyHost = w.free->host();
-        return ok();
-    }
-    w.callbacks = std::make_unique<BodyCallbacks>();
-    w.callbacks->context = w.context;
-    w.callbacks->host = host;
-    solids.bodyHost.self = w.callbacks.get();
-    solids.bodyHost.advance = advance;
-    solids.bodyHost.reset = reset;
-    return ok();
-}
-
 Status addParticles(const rivulet_world_options& o, Sources& sources) {
     if (o.particles_count > 0 && o.particles == nullptr) return badInput("particles is NULL, and particles_count is not 0");
     for (size_t k = 0; k < o.particles_count; ++k)
@@ -173,9 +73,9 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     if (o.json != nullptr)
         if (Status read = readJson(o.json, "json", visiting(w.params)); !read) return read;
     if (Status sense = checkScene(w.params); !sense) return sense;
-    if (Status added = w.walls.begin(o, w.params.fluid.spacing, context.memoryLimit, context.jobs); !added) return added;
+    if (Status added = w.walls.begin(o, w.params.fluid, context.memoryLimit, context.jobs); !added) return added;
     Solids solids = w.walls.solids();
-    if (Status added = addBodies(o, w, solids); !added) return added;
+    if (Status added = w.bodies.begin(o, w.params.fluid, context.jobs, context.memoryLimit, context.callback, solids); !added) return added;
     Result<Sources> sources = sourcesOf(w.params);
     if (!sources) return sources.error();
     if (Status added = addParticles(o, *sources); !added) return added;
@@ -190,7 +90,7 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     auto made = FluidWorld::create(*context.device, simulated(w, w.params), solids, context.log, *sources);
     if (!made) return made.error();
     w.world = std::move(*made);
-    return thrown(w);
+    return w.bodies.thrown();
 }
 
 }  // namespace
@@ -242,8 +142,10 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
             if (!pose) return pose.error();
             poses.push_back(*pose);
         }
-        if (world->world->lastStep())  // walls of an incomplete world do not change
+        if (world->world->lastStep()) {  // walls of an incomplete world do not change
             for (const std::string& wrong : world->walls.arrive(*world->world)) world->context->log.error(wrong);
+            for (const std::string& wrong : world->bodies.arrive(*world->world)) world->context->log.error(wrong);
+        }
         const Walls::Targets before = world->walls.targets();
         if (in.poses != nullptr) world->walls.move(poses);
         for (size_t k = 0; in.shapes != nullptr && k < deforming; ++k)
@@ -256,7 +158,7 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
             world->walls.moveBack(before);
             return sound;
         }
-        if (world->callbacks) world->callbacks->thrown.clear();
+        world->bodies.forget();
         rivulet_context& context = *world->context;
         collectTimes(context);
         to.deviceMs = context.deviceMs - world->deviceMs;  // of all its worlds: passes are not counted per world
@@ -266,17 +168,17 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (context.device->stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
         if (Status stepped = world->world->lastStep(); !stepped) return stepped;
         if (Status recorded = recordFrame(*world); !recorded) return recorded;
-        return thrown(*world);
+        return world->bodies.thrown();
     });
 }
 
 rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
-        if (world->callbacks) world->callbacks->thrown.clear();
+        world->bodies.forget();
         world->world->reset();
         world->walls.follow(world->world->poses());
         if (Status back = world->world->lastStep(); !back) return back;
-        return thrown(*world);
+        return world->bodies.thrown();
     });
 }
 
@@ -384,16 +286,6 @@ rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* 
         rivulet_particles full = to;
         full.count = all.position.size();
         return writeStruct(full, particles, "rivulet_particles", "particles");
-    });
-}
-
-rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why) {
-    return with(world, why, Needs::memory, [&]() -> Status {
-        const std::vector<BodyState>& bodies = world->world->bodies();
-        if (states == nullptr) return badInput("states is NULL");
-        if (count != bodies.size()) return badInput(fmt::format("count is {}, and there are {} bodies", count, bodies.size()));
-        for (size_t k = 0; k < count; ++k) states[k] = stateOf(bodies[k]);
-        return ok();
     });
 }
 

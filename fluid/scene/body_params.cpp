@@ -34,6 +34,7 @@ void BodyParams::visit(ParamVisitor& v) {
             restitution);
     v.value({.name = "fixed", .doc = "whether it is static: a wall of boundary particles", .fixed = kFixed}, fixed);
     v.value({.name = "sticks", .doc = "boundary condition of the fluid at the body; on: no-slip; off: free slip", .fixed = kFixed}, sticks);
+    layers.visit(v);
     v.list({.name = "parts", .doc = "meshes that are drawn with a hull or mesh", .fixed = kFixed}, parts);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/core/params.h"
+#include "fluid/sim/solids/layers.h"
 
 namespace rivulet {
 
@@ -35,6 +36,7 @@ struct BodyParams {
     float restitution = 0.1F;   // 0..1
     bool fixed = false;
     bool sticks = false;  // no-slip (true) or free slip
+    LayersParams layers;
     std::vector<BodyPartParams> parts;
     vec3 colour{0.85F, 0.45F, 0.2F};  // linear
     float roughness = 0.4F;

@@ -71,6 +71,7 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.group({.name = "wave", .doc = "a travelling wave that bends a mesh"}, wave);
     v.group({.name = "animation", .doc = "an animation of the mesh file, instead of a motion or a wave"}, animation);
     v.value({.name = "solid", .doc = "whether water and bodies collide with it; off: a mesh is only drawn", .fixed = kFixed}, solid);
+    layers.visit(v);
     static const std::vector<std::string> looks = {"file", "scene"};
     v.choice(
         {.name = "materials", .doc = "materials of a mesh; file: those of its file, if it has any; scene: the values below for all parts"},

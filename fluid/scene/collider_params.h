@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/core/params.h"
+#include "fluid/sim/solids/layers.h"
 
 namespace rivulet {
 
@@ -60,7 +61,8 @@ struct ColliderParams {
     ColliderMotion motion;
     ColliderWave wave;
     ColliderAnimation animation;
-    bool solid = true;                 // false: drawn, but not collided with
+    bool solid = true;  // false: drawn, but not collided with
+    LayersParams layers;
     std::string materials = "file";    // file: those of the mesh file; scene: the values below
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;

@@ -162,6 +162,8 @@ Result<std::vector<SceneBody>> sceneBodies(const SceneFile& scene) {
         if (!made)
             return Error{fmt::format("bodies[{}]{}: {}", i, params.mesh.empty() ? "" : " (" + params.mesh + ")", made.error().message),
                          made.error().fault};
+        made->form.layers = params.layers;
+        made->body.meetsWater = scene.fluid.collision.layers.meet(params.layers);
         all.push_back(std::move(*made));
     }
     return all;

@@ -58,9 +58,18 @@ void touchPlane(const btCollisionObject& plane, const btCollisionObject& body, b
     }
 }
 
+constexpr LayersParams kBox{LayersParams::kAll, LayersParams::kAll};
+LayersParams layersOf(const btCollisionObject& object) { return {object.getUserIndex(), object.getUserIndex2()}; }
+void setLayers(btCollisionObject& object, const LayersParams& layers) {
+    object.setUserIndex(layers.layers);
+    object.setUserIndex2(layers.meets);
+}
+
 void meet(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
     const auto& a = *static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
     const auto& b = *static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+    const bool ofBox = layersOf(a) == kBox || layersOf(b) == kBox;
+    if (!ofBox && !layersOf(a).meet(layersOf(b))) return;
     for (const auto& [plane, body] : {std::pair(&a, &b), std::pair(&b, &a)})
         if (plane->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE && body->getUserPointer() != nullptr)
             return touchPlane(*plane, *body, dispatcher);
@@ -140,11 +149,12 @@ struct BulletSolids::Impl {
         return raw;
     }
     // Friction and restitution of a pair are products: the scene's are 1, so that the body's hold.
-    btRigidBody* addStill(btCollisionShape* form, const Pose& pose) {
+    btRigidBody* addStill(btCollisionShape* form, const Pose& pose, const LayersParams& layers) {
         auto body = std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, form));
         body->setWorldTransform(to(pose));
         body->setFriction(1);
         body->setRestitution(1);
+        setLayers(*body, layers);
         world.addRigidBody(body.get());
         all.push_back(std::move(body));
         return all.back().get();
@@ -296,17 +306,19 @@ BulletSolids::BulletSolids(const Scene& scene, std::span<const Body> bodies, std
             if (periodic[axis]) continue;
             vec3 normal(0.0F);
             normal[axis] = side;
-            w.addStill(w.shape<btStaticPlaneShape>(to(normal), side > 0 ? scene.box.min[axis] : -scene.box.max[axis]), origin);
+            w.addStill(w.shape<btStaticPlaneShape>(to(normal), side > 0 ? scene.box.min[axis] : -scene.box.max[axis]), origin, kBox);
         }
-    for (const PlaneSolid& p : scene.planes) {
+    const auto layersAt = [](std::span<const LayersParams> all, size_t k) { return all.empty() ? LayersParams() : all[k]; };
+    for (size_t k = 0; k < scene.planes.size(); ++k) {
+        const PlaneSolid& p = scene.planes[k];
         const vec3 normal = glm::normalize(p.normal);
-        w.addStill(w.shape<btStaticPlaneShape>(to(normal), glm::dot(normal, p.position)), origin);
+        w.addStill(w.shape<btStaticPlaneShape>(to(normal), glm::dot(normal, p.position)), origin, layersAt(scene.planeLayers, k));
     }
-    for (const MeshView& mesh : scene.still)
-        if (mesh.triangleCount() > 0) w.addStill(w.meshOf(mesh), origin);
+    for (size_t k = 0; k < scene.still.size(); ++k)
+        if (scene.still[k].triangleCount() > 0) w.addStill(w.meshOf(scene.still[k]), origin, layersAt(scene.stillLayers, k));
     for (size_t k = 0; k < scene.moving.size(); ++k) {
         if (scene.moving[k].triangleCount() == 0) continue;
-        btRigidBody* body = w.addStill(w.meshOf(scene.moving[k]), scene.poses[k]);
+        btRigidBody* body = w.addStill(w.meshOf(scene.moving[k]), scene.poses[k], layersAt(scene.movingLayers, k));
         body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
         body->setActivationState(DISABLE_DEACTIVATION);
         w.moving.push_back(body);
@@ -327,6 +339,7 @@ BulletSolids::BulletSolids(const Scene& scene, std::span<const Body> bodies, std
         auto body = std::make_unique<btRigidBody>(info);
         body->setActivationState(DISABLE_DEACTIVATION);
         body->setUserPointer(w.cornersOf(forms[k]));
+        setLayers(*body, forms[k].layers);
         w.world.addRigidBody(body.get());
         w.bodies.push_back(std::move(body));
         states.push_back(bodies[k].state);

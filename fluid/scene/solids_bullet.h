@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/mesh_view.h"
+#include "fluid/sim/solids/layers.h"
 #include "fluid/sim/solids/solids.h"
 
 namespace rivulet {
@@ -22,6 +23,7 @@ struct BodyForm {
     // Boxes that fill a mesh: centres and sizes, m.
     std::vector<std::pair<vec3, vec3>> cells;
     float friction = 0.5F, restitution = 0.1F;
+    LayersParams layers;
 };
 
 // Boxes that fill the inside of a shape (negative distance), `across` of them along the longest side.
@@ -43,6 +45,8 @@ class BulletSolids {
         std::span<const PlaneSolid> planes;
         std::span<const MeshView> still, moving;
         std::span<const Pose> poses;
+        // Of each of them; empty: as by default. The walls of the box meet all bodies.
+        std::span<const LayersParams> planeLayers = {}, stillLayers = {}, movingLayers = {};
     };
     // One form per body. Copies its arguments.
     BulletSolids(const Scene& scene, std::span<const Body> bodies, std::span<const BodyForm> forms);

@@ -5,6 +5,7 @@
 #include "fluid/io/world_frame.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/session.h"
+#include "fluid/sim/world/world_state.h"
 
 namespace rivulet {
 
@@ -17,10 +18,14 @@ std::string_view takeLine(std::string_view& text) {
     return line.empty() ? std::string_view("nothing else") : line;
 }
 
-// Error (badInput): names the first line that differs.
+// Error (badInput): names the first line that differs. Of a parameter that a later version added there is none in the recording.
 Status sameScene(const std::string& path, std::string_view recorded, std::string_view now) {
+    if (sameFixedValues(recorded, now)) return ok();
+    const std::string all = fmt::format("\n{}", recorded);
     while (!recorded.empty() || !now.empty()) {
-        const std::string_view was = takeLine(recorded), is = takeLine(now);
+        const std::string_view is = takeLine(now);
+        if (all.find(fmt::format("\n{}", is.substr(0, is.find(" = ") + 3))) == std::string::npos && !now.empty()) continue;
+        const std::string_view was = takeLine(recorded);
         if (was != is)
             return badInput(
                 fmt::format("{}: it was recorded with {}, this scene has {}: use the scene, the --preset and the --set of the "

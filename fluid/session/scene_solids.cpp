@@ -46,6 +46,8 @@ SceneSolids::Motion SceneSolids::motionAt(const SceneFile& scene, double time, d
     Motion motion;
     for (const Rigid& r : rigid_)
         motion.poses.push_back(poseOf(scene, r.model, time, r.turned + double{paramsOf(scene, r.model).motion.spin} * ahead));
+    motion.contacts = motion.poses;
+    for (const size_t m : dry_) motion.contacts.push_back(poseOf(scene, m, time, time * double{paramsOf(scene, m).motion.spin}));
     for (Deforming& d : deforming_) {
         if (models_[d.model].plays())
             models_[d.model].shape(time, d.shape);
@@ -56,8 +58,8 @@ SceneSolids::Motion SceneSolids::motionAt(const SceneFile& scene, double time, d
     return motion;
 }
 
-void SceneSolids::moveContacts(std::span<const Pose> poses, double seconds) {
-    if (contacts_) contacts_->moveTo(poses, seconds);
+void SceneSolids::moveContacts(const Motion& motion, double seconds) {
+    if (contacts_) contacts_->moveTo(motion.contacts, seconds);
 }
 
 void SceneSolids::advance(const SceneFile& scene, double seconds) {
@@ -66,7 +68,9 @@ void SceneSolids::advance(const SceneFile& scene, double seconds) {
 
 void SceneSolids::toStart(const FluidWorld& world) {
     for (Rigid& r : rigid_) r.turned = 0;
-    moveContacts(world.poses(), 0);
+    std::vector<Pose> contacts = world.poses();
+    contacts.insert(contacts.end(), dryStart_.begin(), dryStart_.end());
+    if (contacts_) contacts_->moveTo(contacts, 0);
 }
 
 Status SceneSolids::rest() {

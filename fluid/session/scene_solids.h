@@ -74,12 +74,13 @@ class SceneSolids {
     struct Motion {
         std::vector<Pose> poses;
         std::vector<std::span<const vec3>> shapes;
+        std::vector<Pose> contacts;  // of all that move and bodies can meet: first those of poses
     };
     Motion motionAt(const SceneFile& scene, double time, double ahead);
-    void moveContacts(std::span<const Pose> poses, double seconds);  // as BulletSolids::moveTo
-    void advance(const SceneFile& scene, double seconds);            // counts angles on, when the world has stepped
-    void toStart(const FluidWorld& world);                           // with a world that is at its start
-    Status rest();                                                   // deforming voxels as they were when the world was made
+    void moveContacts(const Motion& motion, double seconds);  // as BulletSolids::moveTo
+    void advance(const SceneFile& scene, double seconds);     // counts angles on, when the world has stepped
+    void toStart(const FluidWorld& world);                    // with a world that is at its start
+    Status rest();                                            // deforming voxels as they were when the world was made
 
     std::vector<double> turned() const;  // deg, of each rigid collider
     void setTurned(std::span<const double> turned);
@@ -103,7 +104,7 @@ class SceneSolids {
 
   private:
     // How water meets a model. Decided by roleOf alone.
-    enum class Role { still, rigid, deforming, drawn };
+    enum class Role { still, rigid, deforming, drawn, dry };  // dry: bodies alone can meet it
     struct Rigid {
         size_t model = 0;
         std::unique_ptr<VoxelField> field;
@@ -135,7 +136,9 @@ class SceneSolids {
     std::vector<uint8_t> surfaceOf_;     // of each collider
     VoxelField still_;
     std::vector<Rigid> rigid_;
-    std::vector<size_t> shown_;  // models that move rigidly and are drawn, but not solid
+    std::vector<size_t> shown_;  // models that move rigidly and are drawn, but the water does not meet them
+    std::vector<size_t> dry_;    // those of them that bodies can meet
+    std::vector<Pose> dryStart_;
     std::vector<Deforming> deforming_;
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies

@@ -95,6 +95,8 @@ Result<VoxelField> bakeMeshes(const SceneFile& scene, std::span<const MeshView> 
     return cachedVoxelField(views, options, log);
 }
 
+bool meetsWater(const SceneFile& scene, const ColliderParams& collider) { return scene.fluid.collision.layers.meet(collider.layers); }
+
 }  // namespace
 
 Status SceneSolids::create(SceneFile& scene, const Log& log, OpeningProgress& progress) {
@@ -106,7 +108,7 @@ Status SceneSolids::create(SceneFile& scene, const Log& log, OpeningProgress& pr
     refs.assign(scene.colliders.size(), {});
     for (size_t i = 0; i < scene.colliders.size(); ++i) {
         const ColliderKind& kind = kindOf(scene.colliders[i]);
-        if (kind.hasTriangles()) continue;
+        if (kind.hasTriangles() || !meetsWater(scene, scene.colliders[i])) continue;
         refs[i] = {ProbeOn::plane, static_cast<uint32_t>(solids_.planes.size())};
         kind.addTo(scene.colliders[i], surfaceOf_[i], solids_);
     }
@@ -146,6 +148,7 @@ Status SceneSolids::importColliders(SceneFile& scene, const Log& log, OpeningPro
 SceneSolids::Role SceneSolids::roleOf(const SceneFile& scene, size_t model) const {
     const ColliderParams& collider = paramsOf(scene, model);
     if (!collider.solid) return Role::drawn;
+    if (!meetsWater(scene, collider)) return Role::dry;
     if (collider.motion.moves() || models_[model].rigid()) return Role::rigid;
     return collider.wave.amplitude > 0 || models_[model].plays() ? Role::deforming : Role::still;
 }
@@ -165,6 +168,11 @@ Status SceneSolids::bake(const SceneFile& scene, const Log& log, OpeningProgress
         const Bounds bounds = model.mesh().bounds();
         const MeshView view = model.mesh().view();
         switch (roleOf(scene, m)) {
+            case Role::dry:
+                if (collider.wave.amplitude > 0)
+                    return badInput(
+                        fmt::format("colliders[{}] has a wave, and the water does not meet it: change its layers, or remove the wave", c));
+                [[fallthrough]];
             case Role::drawn:
                 if (collider.motion.moves() || model.rigid()) shown_.push_back(m);
                 break;
@@ -237,17 +245,47 @@ Status SceneSolids::addBodies(const SceneFile& scene) {
         forms.push_back(std::move(b.form));
         solids_.bodies.push_back(std::move(b.body));
     }
+    Solids planes;
+    std::vector<LayersParams> planeLayers, stillLayers, movingLayers;
+    for (const ColliderParams& collider : scene.colliders) {
+        const ColliderKind& kind = kindOf(collider);
+        if (kind.hasTriangles()) continue;
+        kind.addTo(collider, 0, planes);
+        planeLayers.push_back(collider.layers);
+    }
     std::vector<MeshView> still, moving;
     std::vector<Pose> poses;
-    for (size_t m = 0; m < models_.size(); ++m)
-        if (roleOf(scene, m) == Role::still) still.push_back(models_[m].mesh().view());
-    for (const Rigid& r : rigid_) {
-        moving.push_back(models_[r.model].mesh().view());
-        poses.push_back(poseOf(scene, r.model, 0, 0));
+    const auto addMoving = [&](size_t m) {
+        moving.push_back(models_[m].mesh().view());
+        movingLayers.push_back(paramsOf(scene, m).layers);
+        poses.push_back(poseOf(scene, m, 0, 0));
+    };
+    for (const Rigid& r : rigid_) addMoving(r.model);
+    for (size_t m = 0; m < models_.size(); ++m) {
+        const Role role = roleOf(scene, m);
+        const bool moves = paramsOf(scene, m).motion.moves() || models_[m].rigid();
+        if (role != Role::still && role != Role::dry) continue;
+        if (role == Role::dry && models_[m].plays() && !models_[m].rigid())
+            return badInput(fmt::format(
+                "colliders[{}] bends, and bodies would pass through it: set solid to false, or leave the bodies out", colliderOf_[m]));
+        if (moves) {
+            addMoving(m);
+            dry_.push_back(m);
+            dryStart_.push_back(poses.back());
+        } else {
+            still.push_back(models_[m].mesh().view());
+            stillLayers.push_back(paramsOf(scene, m).layers);
+        }
     }
-    contacts_ = std::make_unique<BulletSolids>(
-        BulletSolids::Scene{.box = scene.fluid.box, .planes = solids_.planes, .still = still, .moving = moving, .poses = poses},
-        solids_.bodies, forms);
+    contacts_ = std::make_unique<BulletSolids>(BulletSolids::Scene{.box = scene.fluid.box,
+                                                                   .planes = planes.planes,
+                                                                   .still = still,
+                                                                   .moving = moving,
+                                                                   .poses = poses,
+                                                                   .planeLayers = planeLayers,
+                                                                   .stillLayers = stillLayers,
+                                                                   .movingLayers = movingLayers},
+                                               solids_.bodies, forms);
     solids_.bodyHost = contacts_->host();
     return ok();
 }
@@ -261,8 +299,12 @@ bool SceneSolids::needsNew(const SceneFile& before, const SceneFile& scene) cons
     if (scene.colliders.size() != before.colliders.size() || scene.bodies.size() != before.bodies.size()) return true;
     for (size_t i = 0; i < scene.colliders.size(); ++i) {
         const ColliderParams &a = before.colliders[i], &b = scene.colliders[i];
+        if (a.layers != b.layers) return true;
         if (a.motion.moves() != b.motion.moves() || (a.wave.amplitude > 0) != (b.wave.amplitude > 0)) return true;
     }
+    for (size_t i = 0; i < scene.bodies.size(); ++i)
+        if (scene.bodies[i].layers != before.bodies[i].layers) return true;
+    if (scene.fluid.collision.layers != before.fluid.collision.layers) return true;
     std::vector<uint8_t> surfaceOf;
     (void)surfacesOf(scene, surfaceOf);
     return surfaceOf != surfaceOf_;

@@ -102,7 +102,7 @@ void Session::advance(double seconds, double deviceMs) {
     inputs.mostMs = mostMs_;
     const double before = world_->time(), ahead = world_->pending() + seconds;
     const SceneSolids::Motion motion = solids_.motionAt(scene_, before + ahead, ahead);
-    solids_.moveContacts(motion.poses, seconds);
+    solids_.moveContacts(motion, seconds);
     inputs.poses = motion.poses;
     inputs.shapes = motion.shapes;
     world_->step(inputs, seconds);

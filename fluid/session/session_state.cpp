@@ -130,7 +130,7 @@ Status Session::continueFrom(Session& other) {
         toStart();
         return gone;
     }
-    solids_.moveContacts(motion.poses, 0);
+    solids_.moveContacts(motion, 0);
     solids_.placeNodes(scene_, *world_);
     return ok();
 }

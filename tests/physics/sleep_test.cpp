@@ -247,6 +247,16 @@ TEST_P(Wakes, ByABodyThatFallsIn) {
         [&](FluidWorld&, FluidInputs&) { held.released = true; });
 }
 
+TEST_P(Wakes, ByABodyThatIsAdded) {
+    Body block;
+    block.shape = boxShape(vec3(0.08F), 0, kSpacing);
+    block.state.pose.position = vec3(0.12F, 0.1F, 0.12F);
+    wakes([](FluidParams& p, Solids&, Sources&) { p.maxBodySamples = 200; },
+          [&](FluidWorld& world, FluidInputs&) {
+              if (world.bodies().empty()) EXPECT_TRUE(world.addBody(block));
+          });
+}
+
 TEST_P(Wakes, ByAWallThatMoves) {
     const VoxelField field = test::baked(test::makeBox(vec3(-0.05F), vec3(0.05F)), 0.01F, kSpacing);
     std::vector<Pose> poses(1);
@@ -313,6 +323,22 @@ TEST_P(Wakes, ByWaterThatAHostTakes) {
 }
 
 // One that creeps more slowly than the bound on speed: the water gives way all the same.
+TEST(Sleep, EndsWhereABodyIsRemoved) {
+    auto device = cpu();
+    const vec3 centre(0.12F, 0.1F, 0.12F), half(0.04F);
+    Body block;
+    block.shape = boxShape(2.0F * half, 0, kSpacing);
+    block.state.pose.position = centre;
+    auto world = makeWorld(*device, pool("dfsph"), {.bodies = {block}});
+    ASSERT_LT(settle(*world), 600);
+    ASSERT_TRUE(world->removeBody(0));
+    run(*world, 20);
+    EXPECT_LT(world->stats().asleep, world->stats().particles / 2);
+    int inside = 0;
+    for (const vec4& x : byId(*world)) inside += x.w >= 0 && glm::all(glm::lessThan(glm::abs(vec3(x) - centre), half)) ? 1 : 0;
+    EXPECT_GT(inside, 32) << "of 64 that there is room for";
+}
+
 TEST_P(Wakes, ByABodyThatCreeps) {
     auto device = cpu();
     Solids solids;

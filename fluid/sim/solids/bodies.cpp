@@ -90,14 +90,21 @@ std::vector<float> sampleVolumes(std::span<const vec3> samples, const FluidParam
 }
 
 FreeBodies::FreeBodies(std::span<const Body> bodies) {
-    for (const Body& b : bodies) own_.push_back({double{b.shape.mass}, dvec3(b.shape.inertia)});
+    for (const Body& b : bodies) add(b);
 }
+
+void FreeBodies::add(const Body& body) { own_.push_back({double{body.shape.mass}, dvec3(body.shape.inertia)}); }
 
 BodyHost FreeBodies::host() {
     BodyHost h;
     h.self = this;
     h.remembersNothing = true;
     h.reset = [](void*, std::span<const BodyState>) {};
+    h.added = [](void* self, uint32_t, const Body& body) { static_cast<FreeBodies*>(self)->add(body); };
+    h.removed = [](void* self, uint32_t, size_t index) {
+        std::vector<Own>& own = static_cast<FreeBodies*>(self)->own_;
+        own.erase(own.begin() + static_cast<std::ptrdiff_t>(index));
+    };
     h.advance = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
         const std::vector<Own>& own = static_cast<FreeBodies*>(self)->own_;
         ASSERT(loads.size() == own.size() && states.size() == own.size(), "one load and one state a body");
@@ -126,14 +133,17 @@ BodyHost FreeBodies::host() {
 }
 
 BodyLoads::BodyLoads(std::span<const Body> bodies, const FluidParams& params) {
-    const double particle = std::pow(double{params.spacing}, 3);
-    for (const Body& b : bodies) {
-        const double mass = b.shape.mass, density = params.restDensity;
-        const double layer = density * particle * static_cast<double>(b.shape.samples.size());
-        const double with = methodOf(params).hasSound ? std::max(layer - mass, 0.0) : density * movedAlong(b.shape);
-        own_.push_back({mass > 0 ? with / mass : 0.0, {}});
-    }
+    for (const Body& b : bodies) add(b, params);
 }
+
+void BodyLoads::add(const Body& body, const FluidParams& params) {
+    const double particle = std::pow(double{params.spacing}, 3), mass = body.shape.mass, density = params.restDensity;
+    const double layer = density * particle * static_cast<double>(body.shape.samples.size());
+    const double with = methodOf(params).hasSound ? std::max(layer - mass, 0.0) : density * movedAlong(body.shape);
+    own_.push_back({mass > 0 ? with / mass : 0.0, {}});
+}
+
+void BodyLoads::remove(size_t body) { own_.erase(own_.begin() + static_cast<std::ptrdiff_t>(body)); }
 
 BodyLoad BodyLoads::transfer(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds) {
     Own& own = own_[body];

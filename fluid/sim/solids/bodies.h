@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -40,7 +41,8 @@ struct BodyState {
 
 struct Body {
     BodyShape shape;
-    BodyState state;  // at t = 0
+    BodyState state;         // at t = 0
+    bool meetsWater = true;  // false: the water passes through it, its load is 0, and the host alone moves it
 };
 
 // What the fluid does to a body in a substep: force, N, and torque about the centre of mass, N m, in the world's axes.
@@ -49,14 +51,15 @@ struct BodyLoad {
     dvec3 pendingImpulse{0.0}, pendingAngularImpulse{0.0};  // N s, N m s: transferred in later substeps, see BodyLoads
 };
 
-// Moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither.
+// Moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither. Loads and states are those
+// of all bodies, in the order of FluidWorld::bodyIds.
 struct BodyHost {
     void* self = nullptr;
     // Moves all bodies by `seconds` under the fluid's `loads`, its own contacts and `gravity` (m/s^2). `states`: as they are -> as they
     // are then.
     void (*advance)(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds,
                     std::span<BodyState> states) = nullptr;
-    // Back to `states`, those at t = 0.
+    // Back to `states`, those at t = 0; of a body that was added later, its state then.
     void (*reset)(void* self, std::span<const BodyState> states) = nullptr;
     // For a world that is saved: whether advance depends on its arguments alone. Else the host needs the other two, or its world cannot be
     // saved.
@@ -65,6 +68,10 @@ struct BodyHost {
     std::vector<std::byte> (*save)(void* self) = nullptr;
     // Continues from there; the bodies are in `states`. Error (badInput): the bytes are not valid; then nothing has changed.
     Status (*restore)(void* self, std::span<const std::byte> bytes, std::span<const BodyState> states) = nullptr;
+    // For bodies that are added and removed while the world runs, else that is refused: both, or neither. `id`: of FluidWorld::addBody; the
+    // body is the last of the next states. `index`: of the removed one among the states until now. If one throws, nothing changes.
+    void (*added)(void* self, uint32_t id, const Body& body) = nullptr;
+    void (*removed)(void* self, uint32_t id, size_t index) = nullptr;
 };
 
 // A host for worlds where bodies touch nothing but fluid: rigid motion, symplectic Euler, momentum and angular momentum kept.
@@ -74,6 +81,7 @@ class FreeBodies {
     BodyHost host();  // the FreeBodies must outlive its use
 
   private:
+    void add(const Body& body);
     struct Own {
         double mass;
         dvec3 inertia;
@@ -91,6 +99,8 @@ class FreeBodies {
 class BodyLoads {
   public:
     BodyLoads(std::span<const Body> bodies, const FluidParams& params);
+    void add(const Body& body, const FluidParams& params);  // behind the others
+    void remove(size_t body);
     // Returns the filtered load of a substep of `seconds`; `wet`: share of the surface that is in the fluid, 0..1.
     BodyLoad transfer(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds);
     void restore(std::span<const BodyLoad> last);  // what transfer returned last, of each

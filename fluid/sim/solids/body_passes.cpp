@@ -16,6 +16,7 @@ namespace {
 
 bool isSound(const BodyState& s) { return rivulet::isSound(s.pose) && isWithin(s.velocity, kMostSpeed) && isWithin(s.spin, kMostSpeed); }
 
+constexpr float kNoBody = -1;           // of a sample
 constexpr double kSecondParts = 1.0e6;  // 1/s: a load acts for longer than the inverse
 bool isFinite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -34,29 +35,45 @@ std::string fault(const Body& body) {
     return "";
 }
 
+std::vector<float> volumesOf(const Body& body, const FluidParams& params) {
+    return body.meetsWater ? sampleVolumes(body.shape.samples, params) : std::vector<float>();
+}
+
 }  // namespace
+
+uint32_t BodyPasses::samplesOf(const Body& body) {
+    return body.meetsWater ? static_cast<uint32_t>(std::min<size_t>(body.shape.samples.size(), UINT32_MAX)) : 0;
+}
+
+bool BodyPasses::anyMeets() const {
+    return std::ranges::any_of(bodies_, [](const Body& b) { return b.meetsWater; });
+}
 
 Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodies, const BodyHost& host, const FluidParams& params,
                                       const PairTraits& traits) {
     BodyPasses b;
     b.device_ = &device;
-    if (bodies.empty()) return b;
+    b.reserve(bodies.size());
+    for (size_t k = 0; k < bodies.size(); ++k) {
+        if (const std::string wrong = fault(bodies[k]); !wrong.empty()) return badInput(fmt::format("body {} {}", k, wrong));
+        b.append(bodies[k], static_cast<uint32_t>(k), b.sampleCount_, volumesOf(bodies[k], params));
+        b.sampleCount_ += b.samplesOf(k);
+    }
+    b.filter_ = BodyLoads(bodies, params);
+    b.startCount_ = bodies.size();
+    if (params.maxBodySamples > 0) {
+        const auto room = static_cast<uint32_t>(params.maxBodySamples);
+        if (room < b.sampleCount_)
+            return badInput(fmt::format("fluid.bodies.maxSamples is {}, but the bodies at the start have {} samples: increase it, or set 0",
+                                        room, b.sampleCount_));
+        b.sampleCount_ = room;
+    }
+    if (bodies.empty() && b.sampleCount_ == 0) return b;
+    b.sampleCount_ = std::max(b.sampleCount_, 1U);  // what follows has room for them
     if ((host.advance == nullptr) != (host.reset == nullptr))
         return badInput("the host of the bodies has one of the functions advance and reset: give it both, or none");
-    b.bodies_.assign(bodies.begin(), bodies.end());
-    for (size_t k = 0; k < bodies.size(); ++k) {
-        const BodyShape& shape = bodies[k].shape;
-        if (const std::string wrong = fault(bodies[k]); !wrong.empty()) return badInput(fmt::format("body {} {}", k, wrong));
-        const std::vector<float> volumes = sampleVolumes(shape.samples, params);
-        b.volumes_.insert(b.volumes_.end(), volumes.begin(), volumes.end());
-        float reach = 0;
-        for (const vec3& p : shape.samples) reach = std::max(reach, glm::length(p));
-        b.reach_.push_back(reach);
-        b.states_.push_back(bodies[k].state);
-    }
-    b.loads_.resize(bodies.size());
-    b.sampleCount_ = static_cast<uint32_t>(b.volumes_.size());
-    b.filter_ = BodyLoads(bodies, params);
+    if ((host.added == nullptr) != (host.removed == nullptr))
+        return badInput("the host of the bodies has one of the functions added and removed: give it both, or none");
     b.host_ = host;
     if (host.advance == nullptr) {
         b.free_ = std::make_shared<FreeBodies>(bodies);
@@ -87,32 +104,165 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
     return b;
 }
 
+void BodyPasses::append(Body body, uint32_t id, uint32_t first, std::vector<float> volumes) {
+    float reach = 0;
+    for (const vec3& p : body.shape.samples) reach = std::max(reach, glm::length(p));
+    states_.push_back(body.state);
+    bodies_.push_back(std::move(body));
+    volumes_.push_back(std::move(volumes));
+    reach_.push_back(reach);
+    loads_.emplace_back();
+    first_.push_back(first);
+    ids_.push_back(id);
+    nextId_ = std::max(nextId_, id + 1);
+}
+
+void BodyPasses::reserve(size_t bodies) {
+    states_.reserve(bodies);
+    bodies_.reserve(bodies);
+    volumes_.reserve(bodies);
+    reach_.reserve(bodies);
+    loads_.reserve(bodies);
+    first_.reserve(bodies);
+    ids_.reserve(bodies);
+    uploaded_.reserve(bodies);
+}
+
+// Memory of the device for as many bodies.
+Status BodyPasses::makeRoom(size_t bodies) {
+    if (bodies <= room_) return ok();
+    Result<Buffer> rows = device_->allocate(bodies * LOAD_THREADS * sizeof(LoadRow));
+    if (!rows) return rows.error();
+    Result<Buffer> on = device_->allocate(bodies * sizeof(DeviceBody));
+    if (!on) return on.error();
+    rows_ = std::move(*rows);
+    deviceBodies_ = std::move(*on);
+    room_ = bodies;
+    return ok();
+}
+
 Status BodyPasses::allocate(uint32_t slots) {
+    if (sampleCount_ == 0) return ok();
     const size_t n = sampleCount_;
-    for (const auto& [buffer, bytes] :
-         {std::pair(&own_, n * sizeof(vec4)), std::pair(&arm_, n * sizeof(vec4)), std::pair(&slotOf_, n * sizeof(uint32_t)),
-          std::pair(&wet_, size_t{slots} * sizeof(float)), std::pair(&rows_, bodies_.size() * LOAD_THREADS * sizeof(LoadRow)),
-          std::pair(&deviceBodies_, bodies_.size() * sizeof(DeviceBody))}) {
+    for (const auto& [buffer, bytes] : {std::pair(&own_, n * sizeof(vec4)), std::pair(&arm_, n * sizeof(vec4)),
+                                        std::pair(&slotOf_, n * sizeof(uint32_t)), std::pair(&wet_, size_t{slots} * sizeof(float))}) {
         Result<Buffer> made = device_->allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);
     }
-    std::vector<vec4> own;
-    own.reserve(n);
-    uploaded_.resize(bodies_.size());
-    for (size_t k = 0; k < bodies_.size(); ++k) {
-        uploaded_[k].firstSample = static_cast<uint32_t>(own.size());
-        for (const vec3& p : bodies_[k].shape.samples) own.emplace_back(p, static_cast<float>(k));
-        uploaded_[k].endSample = static_cast<uint32_t>(own.size());
-        uploaded_[k].bodyCount = static_cast<uint32_t>(bodies_.size());
-    }
-    device_->writeAll<vec4>(own_, own);
+    if (Status room = makeRoom(std::max<size_t>(bodies_.size(), 1)); !room) return room;
+    ownRows_.resize(n);
+    upload();
     return ok();
+}
+
+// Allocates nothing.
+void BodyPasses::upload() {
+    std::ranges::fill(ownRows_, vec4(vec3(0.0F), kNoBody));
+    uploaded_.assign(bodies_.size(), {});
+    for (size_t k = 0; k < bodies_.size(); ++k) {
+        DeviceBody& d = uploaded_[k];
+        d.firstSample = first_[k];
+        d.endSample = first_[k] + samplesOf(k);
+        d.bodyCount = static_cast<uint32_t>(bodies_.size());
+        for (uint32_t s = d.firstSample; s < d.endSample; ++s)
+            ownRows_[s] = vec4(bodies_[k].shape.samples[s - d.firstSample], static_cast<float>(k));
+    }
+    device_->writeAll<vec4>(own_, ownRows_);
+}
+
+std::vector<uint32_t> BodyPasses::packed() const {
+    std::vector<uint32_t> first;
+    first.reserve(bodies_.size());
+    uint32_t at = 0;
+    for (size_t k = 0; k < bodies_.size(); ++k) {
+        first.push_back(at);
+        at += samplesOf(k);
+    }
+    return first;
+}
+
+Status BodyPasses::check(const Body& body) {
+    const std::string wrong = fault(body);
+    return wrong.empty() ? ok() : Status(badInput("the body " + wrong));
+}
+
+Status BodyPasses::add(const Body& body, uint32_t id, const FluidParams& params) {
+    if (Status sound = check(body); !sound) return sound;
+    const uint32_t count = samplesOf(body);
+    uint32_t held = 0;
+    for (size_t k = 0; k < bodies_.size(); ++k) held += samplesOf(k);
+    if (count > sampleCount_ - held)
+        return badInput(
+            fmt::format("the body has {} samples, and there is room for {}: create the world with fluid.bodies.maxSamples of at least {}",
+                        count, sampleCount_ - held, uint64_t{held} + count));
+    if (std::ranges::find(ids_, id) != ids_.end() || id == UINT32_MAX) return badInput(fmt::format("there is a body {} already", id));
+    if (host_.added == nullptr) return badInput("the host of the bodies has no function added: it cannot learn of another body");
+    // The first gap that is long enough; else the others move together.
+    std::vector<size_t> order(bodies_.size());
+    for (size_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::ranges::sort(order, {}, [&](size_t k) { return first_[k]; });
+    uint32_t at = 0;
+    for (const size_t k : order) {
+        if (first_[k] - at >= count) break;
+        at = first_[k] + samplesOf(k);
+    }
+    const bool fits = sampleCount_ - at >= count;
+    // All that may fail comes before anything changes.
+    Body copy = body;
+    std::vector<float> volumes = volumesOf(body, params);
+    BodyLoads filter = filter_;
+    filter.add(body, params);
+    std::vector<uint32_t> moved = fits ? first_ : packed();
+    if (Status room = makeRoom(bodies_.size() < room_ ? room_ : 2 * room_); !room) return room;
+    reserve(room_);
+    moved.reserve(room_);
+    host_.added(host_.self, id, body);
+    filter_ = std::move(filter);
+    first_ = std::move(moved);
+    append(std::move(copy), id, fits ? at : held, std::move(volumes));
+    upload();
+    return ok();
+}
+
+Status BodyPasses::remove(size_t body) {
+    if (host_.removed == nullptr) return badInput("the host of the bodies has no function removed: it cannot learn that a body is gone");
+    host_.removed(host_.self, ids_[body], body);
+    const auto drop = [at = static_cast<std::ptrdiff_t>(body)](auto& all) { all.erase(all.begin() + at); };
+    drop(bodies_);
+    drop(volumes_);
+    drop(reach_);
+    drop(states_);
+    drop(loads_);
+    drop(first_);
+    drop(ids_);
+    if (body < startCount_) --startCount_;
+    filter_.remove(body);
+    misled_.reset();
+    upload();
+    return ok();
+}
+
+Bounds BodyPasses::boundsOf(size_t body) const {
+    const vec3 reach(reach_[body]), at = states_[body].pose.position;
+    return {at - reach, at + reach};
+}
+
+bool BodyPasses::inside(size_t body, const vec3& p, float spacing) const {
+    if (!bodies_[body].shape.distance || !bodies_[body].meetsWater) return false;
+    const vec3 own = states_[body].pose.toOwn(p);
+    return glm::length(own) < reach_[body] + spacing && bodies_[body].shape.distance(own) < 0;
+}
+
+bool BodyPasses::insideAdded(const vec3& p, float spacing) const {
+    for (size_t k = startCount_; k < bodies_.size(); ++k)
+        if (inside(k, p, spacing)) return true;
+    return false;
 }
 
 bool BodyPasses::maySpawn(const vec3& p, float spacing, float near) const {
     for (size_t k = 0; k < bodies_.size(); ++k) {
-        if (!bodies_[k].shape.distance) continue;
+        if (!bodies_[k].shape.distance || !bodies_[k].meetsWater) continue;
         const vec3 own = states_[k].pose.toOwn(p);
         // A hair less than where it would rest, so that a lattice beside a body is not lost to rounding.
         if (glm::length(own) < reach_[k] + spacing && bodies_[k].shape.distance(own) < 0.499F * near * spacing) return false;
@@ -120,21 +270,21 @@ bool BodyPasses::maySpawn(const vec3& p, float spacing, float near) const {
     return true;
 }
 
-std::vector<vec4> BodyPasses::matter() const {
-    std::vector<vec4> rows;
-    rows.reserve(sampleCount_);
+std::vector<vec4> BodyPasses::matter(std::span<const uint32_t> first) const {
+    std::vector<vec4> rows(sampleCount_, vec4(0.0F, 0.0F, 0.0F, -1.0F));
     // Fluid beside the surface is half a spacing off it, the samples are half a spacing behind it: what a sample drags with is twice as
     // fast against the fluid as the surface is (Adami et al. 2012).
     constexpr float kMirrored = 2;
     for (size_t k = 0; k < bodies_.size(); ++k)
-        for (size_t n = bodies_[k].shape.samples.size(); n > 0; --n)
-            rows.emplace_back(volumes_[rows.size()], 0.0F, kMirrored * bodies_[k].shape.sticks, -1.0F - static_cast<float>(k));
+        for (size_t n = 0; n < volumes_[k].size(); ++n)
+            rows[first[k] + n] = vec4(volumes_[k][n], 0.0F, kMirrored * bodies_[k].shape.sticks, -1.0F - static_cast<float>(k));
     return rows;
 }
 
 bool BodyPasses::movedBy(size_t body, const Pose& from, float way) const {
     const Pose& to = states_[body].pose;
     const BodyShape& shape = bodies_[body].shape;
+    if (!bodies_[body].meetsWater) return false;
     // The chord of the turn at the farthest sample: |q - r| of unit quaternions is 2 sin(angle / 4).
     const float turn = std::min(glm::length(to.rotation - from.rotation), glm::length(to.rotation + from.rotation));
     if (glm::length(to.position - from.position) + 2.0F * turn * reach_[body] <= way) return false;
@@ -147,12 +297,12 @@ bool BodyPasses::movedBy(size_t body, const Pose& from, float way) const {
 float BodyPasses::fastest() const {
     float speed = 0;
     for (size_t k = 0; k < states_.size(); ++k)
-        speed = std::max(speed, glm::length(states_[k].velocity) + glm::length(states_[k].spin) * reach_[k]);
+        if (bodies_[k].meetsWater) speed = std::max(speed, glm::length(states_[k].velocity) + glm::length(states_[k].spin) * reach_[k]);
     return speed;
 }
 
 void BodyPasses::place(const StepParams& step, Particles& particles) {
-    if (!any()) return;
+    if (sampleCount_ == 0) return;
     for (size_t k = 0; k < states_.size(); ++k) {
         const BodyState& s = states_[k];
         const quat& q = s.pose.rotation;
@@ -162,7 +312,7 @@ void BodyPasses::place(const StepParams& step, Particles& particles) {
         d.velocity = vec4(s.velocity, 0.0F);
         d.spin = vec4(s.spin, 0.0F);
     }
-    device_->writeAll<DeviceBody>(deviceBodies_, uploaded_);
+    if (any()) device_->write(deviceBodies_, std::as_bytes(std::span(uploaded_)));
     device_->run(place_, step, {&particles.id, &own_, &deviceBodies_, &arm_, &particles.positionNext, &particles.velocityNext},
                  step.awakeSlots);
 }
@@ -194,10 +344,13 @@ void BodyPasses::push(const StepParams& step, const NeighborGrid& grid, Particle
 void BodyPasses::advance(const StepParams& step, Particles& particles, double seconds) {
     if (!any()) return;
     const size_t bodies = bodies_.size();
-    device_->run(sumLoads_, step, {&slotOf_, &particles.acceleration, &wet_, &arm_, &deviceBodies_, &rows_},
-                 static_cast<uint32_t>(bodies) * LOAD_THREADS);
-    const std::vector<LoadRow> rows = device_->readAll<LoadRow>(rows_, bodies * LOAD_THREADS);
+    const bool meets = anyMeets();
+    if (meets)
+        device_->run(sumLoads_, step, {&slotOf_, &particles.acceleration, &wet_, &arm_, &deviceBodies_, &rows_},
+                     static_cast<uint32_t>(bodies) * LOAD_THREADS);
+    const std::vector<LoadRow> rows = meets ? device_->readAll<LoadRow>(rows_, bodies * LOAD_THREADS) : std::vector<LoadRow>();
     for (size_t k = 0; k < bodies; ++k) {
+        if (!bodies_[k].meetsWater) continue;
         dvec3 force(0.0), torque(0.0);
         double wet = 0;
         for (size_t t = k * LOAD_THREADS; t < (k + 1) * LOAD_THREADS; ++t) {
@@ -257,6 +410,7 @@ void BodyPasses::save(WorldState& state) const {
     state.put<uint64_t>("bodies.numbers", numbers);
     state.put<BodyState>("bodies.states", states_);
     state.put<BodyLoad>("bodies.loads", loads_);
+    if (first_ != packed()) state.put<uint32_t>("bodies.first", first_);
     if (host_.save != nullptr) state.putBytes("bodies.host", host_.save(host_.self));
 }
 
@@ -286,7 +440,20 @@ Result<BodyPasses::Saved> BodyPasses::take(WorldState& state) const {
             !within(l.pendingImpulse, mass * double{kMostSpeed}) || !within(l.pendingAngularImpulse, inertia * double{kMostSpeed}))
             return badInput(fmt::format("section bodies.loads of the saved state has an impossible load on body {}: save it again", k));
     }
-    Saved saved{std::move(*states), std::move(*loads), {}};
+    Saved saved{std::move(*states), std::move(*loads), {}, packed()};
+    if (state.sections().contains("bodies.first")) {
+        Result<std::vector<uint32_t>> first = state.take<uint32_t>("bodies.first", bodies_.size());
+        if (!first) return first.error();
+        std::vector<bool> held(sampleCount_);
+        for (size_t k = 0; k < bodies_.size(); ++k)
+            for (uint32_t s = 0; s < samplesOf(k); ++s) {
+                const uint64_t at = uint64_t{(*first)[k]} + s;
+                if (at >= sampleCount_ || held[at])
+                    return badInput("section bodies.first of the saved state has samples of two bodies at one place: save it again");
+                held[at] = true;
+            }
+        saved.first = std::move(*first);
+    }
     if (host_.save != nullptr) {
         Result<WorldState::Bytes> bytes = state.takeBytes("bodies.host");
         if (!bytes) return bytes.error();
@@ -302,6 +469,10 @@ Status BodyPasses::restore(const Saved& saved) {
     states_ = saved.states;
     loads_ = saved.loads;
     filter_.restore(loads_);
+    if (first_ != saved.first) {
+        first_ = saved.first;
+        upload();
+    }
     return ok();
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/compute/device.h"
@@ -18,20 +19,35 @@ namespace rivulet {
 // The bodies of a world, on its Device. In a substep: place, sort, index, then push as often as the method needs, and advance.
 class BodyPasses {
   public:
-    // Error (badInput): a body without samples, not finite, with mass but no inertia, a host without one of its functions; (failed): out of
-    // memory. `host` empty: bodies move freely.
+    // Error (badInput): a body without samples, not finite, with mass but no inertia, a host without one of its functions, more samples
+    // than params.maxBodySamples; (failed): out of memory. `host` empty: bodies move freely.
     static Result<BodyPasses> create(Device& device, std::span<const Body> bodies, const BodyHost& host, const FluidParams& params,
                                      const PairTraits& traits);
 
     // Creates the buffers that depend on the number of slots, including samples. Error: out of memory.
     Status allocate(uint32_t slots);
 
+    // While the world runs: another body behind the others, or one less; the others keep their samples. `params`: as create. Error
+    // (badInput): as create; the host has no function for it; no room for the samples; (failed): out of memory. Nothing has changed then.
+    // place() and Particles::matterOf must follow. An exception of the host leaves the body where it is.
+    Status add(const Body& body, uint32_t id, const FluidParams& params);
+    Status remove(size_t body);
+    static Status check(const Body& body);  // Error (badInput): no body is like this
+
     bool any() const { return !states_.empty(); }
-    uint32_t sampleCount() const { return sampleCount_; }
+    uint32_t sampleCount() const { return sampleCount_; }      // those that there is memory for
+    const std::vector<uint32_t>& ids() const { return ids_; }  // of the bodies
+    uint32_t nextId() const { return nextId_; }
+    const Body& body(size_t body) const { return bodies_[body]; }
+    Bounds boundsOf(size_t body) const;  // m, around it where it is
+    // Whether `p` (m) is inside it, or inside one that was added; of a body without a distance: false.
+    bool inside(size_t body, const vec3& p, float spacing) const;
+    bool insideAdded(const vec3& p, float spacing) const;
     // True if a particle may be spawned at `p`: outside every body, and not nearer than its rest distance.
     bool maySpawn(const vec3& p, float spacing, float near = 1) const;  // `near` as of SolidPasses
-    // The entries of Particles::matterOf for the samples.
-    std::vector<vec4> matter() const;
+    // The entries of Particles::matterOf for the samples; those of no body have a volume of 0.
+    std::vector<vec4> matter() const { return matter(first_); }
+    std::vector<vec4> matter(std::span<const uint32_t> first) const;  // where a saved state has them
 
     const std::vector<BodyState>& states() const { return states_; }
     std::vector<Pose> starts() const;                        // at t = 0
@@ -66,6 +82,7 @@ class BodyPasses {
         std::vector<BodyState> states;
         std::vector<BodyLoad> loads;
         std::vector<std::byte> host;
+        std::vector<uint32_t> first;  // sample of each body
     };
     // Error (failed): the host has a state that it cannot save.
     Status savable() const;
@@ -77,6 +94,14 @@ class BodyPasses {
 
   private:
     uint64_t shapesHash() const;
+    static uint32_t samplesOf(const Body& body);
+    uint32_t samplesOf(size_t body) const { return samplesOf(bodies_[body]); }
+    bool anyMeets() const;                                                            // the water
+    std::vector<uint32_t> packed() const;                                             // first samples without gaps
+    Status makeRoom(size_t bodies);                                                   // on the device
+    void upload();                                                                    // of all bodies, where their samples are
+    void append(Body body, uint32_t id, uint32_t first, std::vector<float> volumes);  // allocates nothing after reserve()
+    void reserve(size_t bodies);
 
     Device* device_ = nullptr;
     std::vector<Body> bodies_;
@@ -88,8 +113,14 @@ class BodyPasses {
     std::shared_ptr<FreeBodies> free_;  // used if there is no other host
     BodyHost host_;
     uint32_t sampleCount_ = 0;
-    std::vector<float> volumes_;  // of each sample, over spacing^3
+    std::vector<uint32_t> ids_;
+    uint32_t nextId_ = 0;
+    size_t startCount_ = 0;                    // the first bodies are those of create()
+    std::vector<uint32_t> first_;              // sample of each body
+    std::vector<std::vector<float>> volumes_;  // of each body's samples, over spacing^3
     std::vector<DeviceBody> uploaded_;
+    std::vector<vec4> ownRows_;  // of own_
+    size_t room_ = 0;            // bodies that there is memory for
     Buffer own_, arm_, slotOf_, wet_, rows_, deviceBodies_;
     Kernel place_, index_, wetSamples_, push_, sumLoads_;
     bool friction_ = false;

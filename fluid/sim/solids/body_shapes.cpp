@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <random>
 #include <unordered_map>
+
+#include "engine/core/jobs.h"
 
 namespace rivulet {
 
@@ -178,6 +181,7 @@ std::vector<vec3> meshSamples(const std::vector<Triangle>& triangles, float spac
                             if (glm::length(dvec3(kept[other]) - p) < apart) return true;
         return false;
     };
+    const std::atomic<bool>* const stop = currentJobs().stop;
     const double darts = std::min(std::ceil(kDartsEach * total / (double{spacing} * spacing)) + 100, kMostDarts);
     for (double k = 0; k < darts; ++k) {
         const auto t = static_cast<size_t>(std::upper_bound(area.begin(), area.end() - 1, unit() * total) - area.begin());
@@ -191,6 +195,7 @@ std::vector<vec3> meshSamples(const std::vector<Triangle>& triangles, float spac
         if (!(glm::dot(across, across) > 0)) continue;
         const dvec3 in = -glm::normalize(across);
         if (crowded(on + in * deep)) continue;
+        if (stop != nullptr && *stop) throw LoopStopped();
         const double thick = thickness(triangles, t, on, in);
         const dvec3 p = on + in * std::min(deep, 0.5 * thick);
         // Beside a sharp edge it would lie under one face and almost on the other.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "fluid/sim/solids/body_passes.h"
 #include "fluid/sim/solids/solid_passes.h"
@@ -49,7 +51,14 @@ Result<Target> solidTarget(const ProbeParams& p, const ProbeTargets& there, cons
                 fmt::format("{}.index is {}, and there are {} {}: give 0 to {}, or -1 for all", key, p.index, count, what, count - 1));
         return Target{.on = on, .index = p.index < 0 ? PROBE_ALL : static_cast<uint32_t>(number)};
     };
-    if (p.on == "body") return checked(ProbeOn::body, there.bodies, "bodies");
+    if (p.on == "body") {
+        if (there.bodies.empty() || p.index < 0) return checked(ProbeOn::body, there.bodies.size(), "bodies");
+        const auto found = std::ranges::find(there.bodies, static_cast<uint32_t>(number));
+        if (found == there.bodies.end())
+            return badInput(
+                fmt::format("{}.index is {}, and there is no body {}: remove the probe, or give -1 for all", key, p.index, p.index));
+        return Target{.on = ProbeOn::body, .index = static_cast<uint32_t>(found - there.bodies.begin())};
+    }
     if (p.on == "plane") return checked(ProbeOn::plane, there.planes, "planes");
     if (p.on == "rigid") return checked(ProbeOn::rigid, there.rigid, "rigid solids");
     if (p.on == "deforming") return checked(ProbeOn::deforming, there.deforming, "deforming solids");
@@ -80,10 +89,12 @@ dvec3 vectorOf(const vec4& v) { return dvec3(v); }
 }  // namespace
 
 ProbeTargets ProbeTargets::of(const Solids& solids) {
+    std::vector<uint32_t> bodies(solids.bodies.size());
+    std::iota(bodies.begin(), bodies.end(), 0U);
     return {.planes = solids.planes.size(),
             .rigid = solids.rigid.size(),
             .deforming = solids.deforming.size(),
-            .bodies = solids.bodies.size(),
+            .bodies = std::move(bodies),
             .field = solids.field != nullptr && !solids.field->empty(),
             .colliders = solids.colliders};
 }

@@ -23,7 +23,8 @@ struct Solids;
 
 // What there is to measure, for create.
 struct ProbeTargets {
-    size_t planes = 0, rigid = 0, deforming = 0, bodies = 0;
+    size_t planes = 0, rigid = 0, deforming = 0;
+    std::vector<uint32_t> bodies = {};  // ids
     bool field = false;
     std::vector<SolidRef> colliders;
     static ProbeTargets of(const Solids& solids);

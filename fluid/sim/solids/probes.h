@@ -24,7 +24,7 @@ struct ProbeParams {
     std::string name;          // unlike all others'
     std::string on = "box";    // box | collider | body | plane | still | rigid | deforming
     std::string face = "all";  // of the box: all | -x | +x | -y | +y | -z | +z
-    int index = -1;            // of those; -1 = all
+    int index = -1;            // of those, of a body its id; -1 = all
     vec3 min{-1.0e5F};         // m, the region: only what acts between min and max counts
     vec3 max{1.0e5F};          // m
     vec3 about{0.0F};          // m, the point of the torque

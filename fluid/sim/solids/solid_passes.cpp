@@ -107,6 +107,13 @@ bool SolidPasses::anyAdded() const {
            (staticAdded_ && static_.field != nullptr);
 }
 
+std::vector<WetSurface::Part> SolidPasses::wetParts() const {
+    Solids solids;
+    solids.field = static_.field;
+    for (const Moving& m : rigid_) solids.rigid.push_back({m.on.field, {}});
+    return WetSurface::partsOf(solids);
+}
+
 bool SolidPasses::hasSurfaces(std::span<const Surface> surfaces) const {
     return std::ranges::equal(
         surfaces, surfaces_, [](const Surface& a, const Surface& b) { return a.friction == b.friction && a.restitution == b.restitution; });

@@ -8,6 +8,7 @@
 #include "engine/compute/device.h"
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/solids/solids.h"
+#include "fluid/sim/solids/wet_surface.h"
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_state.h"
@@ -98,6 +99,7 @@ class SolidPasses {
     };
     FieldView stillField() const { return {ProbeOn::still, 0, &staticBlock_, &static_.distance, &static_.normal, nullptr}; }
     std::vector<FieldView> movingFields() const;
+    std::vector<WetSurface::Part> wetParts() const;                         // that can get wet
     bool moving() const { return !rigid_.empty() || !deforming_.empty(); }  // some may move
 
     const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now

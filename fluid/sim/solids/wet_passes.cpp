@@ -25,18 +25,33 @@ Result<WetPasses> WetPasses::create(Device& device, const Solids& solids, float 
     Result<Kernel> found = device.kernel("fluid/solids/wet", linked ? std::vector<Define>{{"LINKED_LIST", "1"}} : std::vector<Define>{});
     if (!found) return found.error();
     w.kernel_ = *found;
-    // A buffer is never empty, so that a picture may bind it.
-    const size_t points = std::max<size_t>(w.surface_->points.size(), 1), cells = std::max<size_t>(w.surface_->cells.size(), 1);
-    for (auto [buffer, bytes] : {std::pair(&w.points_, points * sizeof(WetSurface::Point)), std::pair(&w.cells_, cells * sizeof(int32_t)),
-                                 std::pair(&w.wet_[0], points * sizeof(float)), std::pair(&w.wet_[1], points * sizeof(float))}) {
-        Result<Buffer> made = device.allocate(bytes);
+    if (Status room = w.allocate(); !room) return room.error();
+    w.reset();
+    return w;
+}
+
+Result<WetPasses> WetPasses::with(std::span<const WetSurface::Part> parts, float spacing) const {
+    WetPasses w;
+    w.device_ = device_;
+    w.kernel_ = kernel_;
+    w.surface_ = std::make_shared<const WetSurface>(WetSurface::of(parts, spacing, surface_.get()));
+    if (Status room = w.allocate(); !room) return room.error();
+    w.restore(w.surface_->valuesFrom(*surface_, device_->readAll<float>(values(), surface_->points.size())));
+    return w;
+}
+
+// A buffer is never empty, so that a picture may bind it.
+Status WetPasses::allocate() {
+    const size_t points = std::max<size_t>(surface_->points.size(), 1), cells = std::max<size_t>(surface_->cells.size(), 1);
+    for (auto [buffer, bytes] : {std::pair(&points_, points * sizeof(WetSurface::Point)), std::pair(&cells_, cells * sizeof(int32_t)),
+                                 std::pair(&wet_[0], points * sizeof(float)), std::pair(&wet_[1], points * sizeof(float))}) {
+        Result<Buffer> made = device_->allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);
     }
-    device.writeAll<WetSurface::Point>(w.points_, w.surface_->points);
-    device.writeAll<int32_t>(w.cells_, w.surface_->cells);
-    w.reset();
-    return w;
+    if (!surface_->points.empty()) device_->writeAll<WetSurface::Point>(points_, surface_->points);
+    if (!surface_->cells.empty()) device_->writeAll<int32_t>(cells_, surface_->cells);
+    return ok();
 }
 
 void WetPasses::reset() {
@@ -89,7 +104,7 @@ Result<std::vector<float>> WetPasses::take(WorldState& state) const {
 
 void WetPasses::restore(std::span<const float> saved) {
     reset();
-    device_->write(wet_[now_], std::as_bytes(saved));
+    if (!saved.empty()) device_->write(wet_[now_], std::as_bytes(saved));
 }
 
 }  // namespace rivulet

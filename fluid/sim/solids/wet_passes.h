@@ -20,6 +20,8 @@ class WetPasses {
   public:
     // Error: out of memory. `linked`: PairTraits::linked.
     static Result<WetPasses> create(Device& device, const Solids& solids, float spacing, bool linked);
+    // The same with other solids: those that stay keep their values, the others are dry. Waits for the device. Error: out of memory.
+    Result<WetPasses> with(std::span<const WetSurface::Part> parts, float spacing) const;
     void reset();  // all dry
 
     // At the end of a frame of `seconds`: positionNext, in the order of the last sort. The poses are of the rigid solids and the bodies.
@@ -36,6 +38,8 @@ class WetPasses {
     const Buffer& cells() const { return cells_; }       // WetSurface::cells
 
   private:
+    Status allocate();
+
     Device* device_ = nullptr;
     std::shared_ptr<const WetSurface> surface_;
     Kernel kernel_;

@@ -91,19 +91,74 @@ mat4 WetSolid::cellsFromWorld(const Pose& pose) const {
     return cellsFromWorld(toWorld);
 }
 
-WetSurface WetSurface::of(const Solids& solids, float spacing) {
+std::vector<WetSurface::Part> WetSurface::partsOf(const Solids& solids) {
+    std::vector<Part> parts;
+    parts.reserve(1 + solids.rigid.size() + solids.bodies.size());
+    if (solids.field != nullptr && !solids.field->empty()) parts.push_back({.solid = {ProbeOn::still, 0}, .field = solids.field});
+    for (size_t k = 0; k < solids.rigid.size(); ++k)
+        if (const VoxelField* field = solids.rigid[k].field; field != nullptr && !field->empty())
+            parts.push_back({.solid = {ProbeOn::rigid, static_cast<uint32_t>(k)}, .field = field});
+    for (size_t k = 0; k < solids.bodies.size(); ++k) addBody(parts, solids.bodies[k], static_cast<uint32_t>(k));
+    return parts;
+}
+
+void WetSurface::addBody(std::vector<Part>& parts, const Body& body, uint32_t id) {
+    const auto index = static_cast<uint32_t>(std::ranges::count_if(parts, [](const Part& p) { return p.solid.on == ProbeOn::body; }));
+    parts.push_back({.solid = {ProbeOn::body, index}, .shape = body.meetsWater ? &body.shape : nullptr, .body = id});
+}
+
+WetSurface WetSurface::of(std::span<const Part> parts, float spacing, const WetSurface* before) {
     WetSurface made;
     // Half a spacing, because wetness depends on the distance to particles. Points of neighbouring voxels must lie in neighbouring cells.
     const float cell = 0.5F * spacing;
-    const auto addField = [&](const VoxelField* field, const SolidRef& ref) {
-        if (field != nullptr && !field->empty()) add(made, ref, shellOf(*field), std::max(cell, 1.01F * field->surface.voxel));
-    };
-    addField(solids.field, {ProbeOn::still, 0});
-    for (size_t k = 0; k < solids.rigid.size(); ++k) addField(solids.rigid[k].field, {ProbeOn::rigid, static_cast<uint32_t>(k)});
-    for (size_t k = 0; k < solids.bodies.size(); ++k)
-        if (solids.bodies[k].shape.shell)
-            add(made, {ProbeOn::body, static_cast<uint32_t>(k)}, solids.bodies[k].shape.shell(0.4F * cell), cell);
+    for (const Part& part : parts) {
+        const size_t count = made.solids.size();
+        WetSolid known{.solid = part.solid, .field = part.field, .body = part.body};
+        if (const WetSolid* old = before != nullptr ? before->same(known) : nullptr) {
+            WetSolid s = *old;
+            s.solid = part.solid;
+            s.firstCell = static_cast<uint32_t>(made.cells.size());
+            s.firstPoint = static_cast<uint32_t>(made.points.size());
+            const auto cells = static_cast<size_t>(s.size.x) * static_cast<size_t>(s.size.y) * static_cast<size_t>(s.size.z);
+            made.cells.reserve(made.cells.size() + cells);
+            for (const int32_t point : std::span(before->cells).subspan(old->firstCell, cells))
+                made.cells.push_back(point < 0 ? -1 : point - static_cast<int32_t>(old->firstPoint) + static_cast<int32_t>(s.firstPoint));
+            const std::span<const Point> points = std::span(before->points).subspan(old->firstPoint, old->points);
+            made.points.insert(made.points.end(), points.begin(), points.end());
+            made.solids.push_back(s);
+            continue;
+        }
+        if (part.field != nullptr)
+            add(made, part.solid, shellOf(*part.field), std::max(cell, 1.01F * part.field->surface.voxel));
+        else if (part.shape != nullptr && part.shape->shell)
+            add(made, part.solid, part.shape->shell(0.4F * cell), cell);
+        if (made.solids.size() > count) {
+            made.solids.back().field = part.field;
+            made.solids.back().body = part.body;
+        }
+    }
     return made;
+}
+
+const WetSolid* WetSurface::same(const WetSolid& solid) const {
+    const auto found = std::ranges::find_if(
+        solids, [&](const WetSolid& s) { return s.solid.on == solid.solid.on && s.field == solid.field && s.body == solid.body; });
+    return found == solids.end() ? nullptr : &*found;
+}
+
+std::vector<float> WetSurface::valuesFrom(const WetSurface& before, std::span<const float> wetness) const {
+    std::vector<float> values(points.size());
+    const WetSolid* still = before.find({ProbeOn::still, 0});
+    for (const WetSolid& s : solids) {
+        const auto to = values.begin() + s.firstPoint;
+        if (const WetSolid* old = before.same(s); old != nullptr && old->points == s.points) {
+            std::copy_n(wetness.begin() + old->firstPoint, s.points, to);
+        } else if (s.solid.on == ProbeOn::still && still != nullptr) {
+            const auto index = static_cast<size_t>(still - before.solids.data());
+            for (uint32_t k = 0; k < s.points; ++k) to[k] = before.at(wetness, index, vec3(points[s.firstPoint + k].place));
+        }
+    }
+    return values;
 }
 
 const WetSolid* WetSurface::find(const SolidRef& ref) const {

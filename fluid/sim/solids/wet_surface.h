@@ -19,6 +19,8 @@ struct WetSolid {
     float cell = 0;     // m, edge of a cell
     ivec3 size{0};      // cells
     uint32_t firstCell = 0, firstPoint = 0, points = 0;
+    const VoxelField* field = nullptr;  // that it is made of; only to compare
+    uint32_t body = 0;                  // id, of a body
 
     // Its own among those of the rigid solids and the bodies.
     Pose poseAmong(std::span<const Pose> rigid, std::span<const BodyState> bodies) const;
@@ -38,7 +40,22 @@ struct WetSurface {
 
     // Cells of half a `spacing` (m), or larger where the voxels are, or the solid is so large that it would have more than a million.
     // Planes, deforming solids and bodies without a shell have none.
-    static WetSurface of(const Solids& solids, float spacing);
+    static WetSurface of(const Solids& solids, float spacing) { return of(partsOf(solids), spacing, nullptr); }
+    // A solid that may have some.
+    struct Part {
+        SolidRef solid;
+        const VoxelField* field = nullptr;  // null: of a body
+        const BodyShape* shape = nullptr;   // null: the water does not meet it
+        uint32_t body = 0;                  // id
+    };
+    static std::vector<Part> partsOf(const Solids& solids);
+    static void addBody(std::vector<Part>& parts, const Body& body, uint32_t id);
+    // Solids of `before` are taken from there. Null: none.
+    static WetSurface of(std::span<const Part> parts, float spacing, const WetSurface* before);
+    // The values of its points, which those of `before` have now: of a static mesh that was baked again, where it was; else 0.
+    std::vector<float> valuesFrom(const WetSurface& before, std::span<const float> wetness) const;
+    // The one that is the same solid as `solid`. Null: there is none.
+    const WetSolid* same(const WetSolid& solid) const;
     // The solid that is part of it; all static meshes are one. Null: it does not get wet.
     const WetSolid* find(const SolidRef& solid) const;
     // Of `wetness`, one value a point, at `place` (m, in the frame of solids[solid]): shaders/fluid/solids/wet_cells.h.

@@ -28,10 +28,10 @@ void DryParams::visit(ParamVisitor& v) {
     v.value({"position", "m", "centre of the volume; with a body, at t = 0", -kMaxPosition, kMaxPosition}, position);
     v.value({"rotation", "deg", "rotation about x, then y, then z; with a body, at t = 0", -360, 360}, rotation);
     v.value({"size", "m", "edge lengths of a box, or axes of an ellipsoid; each above 0", 0, kMaxPosition}, size);
-    v.value({"body", "", "index of the body that it moves with; -1 = none", -1, 1.0e6}, body);
+    v.value({"body", "", "id of the body that it moves with: of a scene's, its index; -1 = none", -1, 1.0e6}, body);
 }
 
-Status checkDry(std::span<const DryParams> volumes, size_t bodies) {
+Status checkDry(std::span<const DryParams> volumes, std::span<const uint32_t> ids) {
     if (volumes.size() > kMostDry)
         return badInput(fmt::format("{} volumes stay dry, and {} are possible: join some", volumes.size(), kMostDry));
     for (size_t k = 0; k < volumes.size(); ++k) {
@@ -39,20 +39,21 @@ Status checkDry(std::span<const DryParams> volumes, size_t bodies) {
         if (Status s = checkParams(pathOf("dry", k), d); !s) return s;
         if (!glm::all(glm::greaterThan(d.size, vec3(kLeast))))
             return badInput(fmt::format("dry[{}].size is ({}, {}, {}) m: give three lengths above 0", k, d.size.x, d.size.y, d.size.z));
-        if (d.body >= 0 && static_cast<size_t>(d.body) >= bodies)
-            return badInput(fmt::format("dry[{}].body is {}, and there are {} bodies: use the index of one, or -1", k, d.body, bodies));
+        if (d.body >= 0 && std::ranges::find(ids, static_cast<uint32_t>(d.body)) == ids.end())
+            return badInput(fmt::format("dry[{}].body is {}, and no body has this id: use that of one of the {} bodies, or -1", k, d.body,
+                                        ids.size()));
     }
     return ok();
 }
 
-std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, std::span<const Pose> starts, std::span<const BodyState> bodies) {
+std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, const DryBodies& bodies) {
     std::vector<DryVolume> placed;
     placed.reserve(volumes.size());
     for (const DryParams& d : volumes) {
         Pose pose = poseOf(d);
         if (d.body >= 0) {
-            const auto k = static_cast<size_t>(d.body);
-            const Pose &start = starts[k], &now = bodies[k].pose;
+            const auto k = static_cast<size_t>(std::ranges::find(bodies.ids, static_cast<uint32_t>(d.body)) - bodies.ids.begin());
+            const Pose &start = bodies.starts[k], &now = bodies.states[k].pose;
             pose = {now.toWorld(start.toOwn(pose.position)), glm::normalize(now.rotation * glm::conjugate(start.rotation) * pose.rotation)};
         }
         placed.push_back({vec4(pose.position, d.shape == "box" ? 0.0F : 1.0F), vec4(0.5F * d.size, 0.0F),

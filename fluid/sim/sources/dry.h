@@ -7,6 +7,7 @@
 // draws single particles and is not cut.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,14 +26,20 @@ struct DryParams {
     vec3 position{0.0F};        // m, its centre; with a body, where it is at t = 0
     vec3 rotation{0.0F};        // deg, about x, then y, then z
     vec3 size{0.0F};            // m, edge lengths or axes
-    int body = -1;              // the body that it moves with; -1: none
+    int body = -1;              // the id of the body that it moves with; -1: none
     void visit(ParamVisitor& v);
 };
 
-// Error (badInput): more than kMostDry, values out of range, a size that is not positive, no such body.
-Status checkDry(std::span<const DryParams> volumes, size_t bodies);
-// In the world, with the bodies where they are; `starts`: where they were at t = 0.
-std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, std::span<const Pose> starts, std::span<const BodyState> bodies);
+// Error (badInput): more than kMostDry, values out of range, a size that is not positive, a body that is not among `ids`.
+Status checkDry(std::span<const DryParams> volumes, std::span<const uint32_t> ids);
+// The bodies of a world: an id, the pose at t = 0 or when it was added, and the state of each.
+struct DryBodies {
+    std::span<const uint32_t> ids;
+    std::span<const Pose> starts;
+    std::span<const BodyState> states;
+};
+// In the world, with the bodies where they are.
+std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, const DryBodies& bodies);
 bool isDry(std::span<const DryVolume> volumes, const vec3& place);
 
 }  // namespace rivulet

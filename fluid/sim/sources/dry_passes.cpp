@@ -22,16 +22,22 @@ Status DryPasses::prepare(Device& device) {
     return ok();
 }
 
-void DryPasses::set(std::span<const DryParams> volumes, std::vector<Pose> starts, std::span<const BodyState> bodies) {
+void DryPasses::set(std::span<const DryParams> volumes, std::vector<uint32_t> ids, std::vector<Pose> starts,
+                    std::span<const BodyState> bodies) {
     params_.assign(volumes.begin(), volumes.end());
+    bodiesChanged(std::move(ids), std::move(starts));
+    volumes_ = placedDry(params_, {ids_, starts_, bodies});
+}
+
+void DryPasses::bodiesChanged(std::vector<uint32_t> ids, std::vector<Pose> starts) {
+    ids_ = std::move(ids);
     starts_ = std::move(starts);
-    volumes_ = placedDry(params_, starts_, bodies);
 }
 
 void DryPasses::run(const StepParams& step, const Buffer& cellStart, Particles& particles, std::span<const BodyState> bodies,
                     std::span<const NamedBuffer> remembered) {
     if (!any()) return;
-    volumes_ = placedDry(params_, starts_, bodies);
+    volumes_ = placedDry(params_, {ids_, starts_, bodies});
     device_->write(places_, std::as_bytes(std::span(volumes_)));
     DryParamsBlock block{};
     block.step = step;
@@ -50,7 +56,7 @@ void DryPasses::report() {
 uint64_t DryPasses::removed() const { return *removed_; }
 
 void DryPasses::reset(std::span<const BodyState> bodies) {
-    volumes_ = placedDry(params_, starts_, bodies);
+    volumes_ = placedDry(params_, {ids_, starts_, bodies});
     removed_ = std::make_shared<uint32_t>(0);
     if (device_ != nullptr) device_->fill(counter_, 0);
 }

@@ -16,8 +16,9 @@ class DryPasses {
   public:
     // Error (failed): out of memory. Nothing the second time.
     Status prepare(Device& device);
-    // Sound volumes, of passes that were prepared; `starts`: the bodies at t = 0.
-    void set(std::span<const DryParams> volumes, std::vector<Pose> starts, std::span<const BodyState> bodies);
+    // Sound volumes, of passes that were prepared. `ids`, `starts`, `bodies`: as DryBodies.
+    void set(std::span<const DryParams> volumes, std::vector<uint32_t> ids, std::vector<Pose> starts, std::span<const BodyState> bodies);
+    void bodiesChanged(std::vector<uint32_t> ids, std::vector<Pose> starts);  // those of params() are still there
     bool any() const { return !params_.empty(); }
     const std::vector<DryParams>& params() const { return params_; }
     const std::vector<DryVolume>& volumes() const { return volumes_; }  // where they last were
@@ -31,6 +32,7 @@ class DryPasses {
   private:
     Device* device_ = nullptr;
     std::vector<DryParams> params_;
+    std::vector<uint32_t> ids_;
     std::vector<Pose> starts_;
     std::vector<DryVolume> volumes_;
     Kernel dry_, forget_;

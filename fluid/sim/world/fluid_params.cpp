@@ -84,6 +84,7 @@ void CollisionParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> kinds = {"slip", "no-slip"};
     v.choice({.name = "walls", .doc = "boundary condition of viscosity at walls; slip: none; no-slip: the fluid has the wall's velocity"},
              walls, kinds);
+    layers.visit(v);
 }
 
 void FoamParams::visit(ParamVisitor& v) {
@@ -128,6 +129,22 @@ void WetnessParams::visit(ParamVisitor& v) {
          "distance below a wet place, along a slope, in which the wetness of the water that runs down falls to 1/e; 0 = none runs", 0, 10},
         runs);
 }
+
+namespace {
+
+// A group of its own, because states of earlier versions lack it.
+struct BodyRoom {
+    int& maxSamples;
+    void visit(ParamVisitor& v) {
+        v.value({"maxSamples", "",
+                 "memory for samples of bodies, of those too that are added while the world runs: a body has about one for each square of "
+                 "0.9 spacings of its surface; 0 = those of the bodies at the start",
+                 0, 16.0e6, kLog, kFixed},
+                maxSamples);
+    }
+};
+
+}  // namespace
 
 void FluidParams::visit(ParamVisitor& v) {
     const std::vector<std::string> names = methods().names();
@@ -189,6 +206,8 @@ void FluidParams::visit(ParamVisitor& v) {
              "scene's duration",
              0, 64.0e6, kLog, kFixed},
             maxParticles);
+    BodyRoom room{maxBodySamples};
+    v.group({.name = "bodies", .doc = "rigid bodies, which are added while the world runs, too"}, room);
     for (const MethodRow& row : methods().rows)
         if (row.visit != nullptr) row.visit(*this, v);
     v.group({.name = "forces", .doc = "forces in addition to pressure and gravity"}, forces);

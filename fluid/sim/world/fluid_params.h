@@ -9,6 +9,7 @@
 #include "engine/core/params.h"
 #include "fluid/sim/methods/method_dfsph.h"
 #include "fluid/sim/methods/method_pbf.h"
+#include "fluid/sim/solids/layers.h"
 #include "fluid/sim/solids/probes.h"
 
 namespace rivulet {
@@ -65,6 +66,7 @@ struct CollisionParams {
     float restitution = 0.0F;    // of mesh colliders
     std::string walk = "exact";  // exact | thesis
     std::string walls = "slip";  // slip | no-slip
+    LayersParams layers = {};    // of the water
     void visit(ParamVisitor& v);
 };
 
@@ -129,6 +131,7 @@ struct FluidParams {
     dvec3 origin{0.0};          // m: position of the scene's (0, 0, 0) in the host's world. A scene file stores it as floats
     bool ellipsoids = false;    // computed for drawing
     int maxParticles = 0;       // 0 = as many as blocks and emitters need
+    int maxBodySamples = 0;     // 0 = as many as the bodies at the start have
     PbfParams pbf = {};
     DfsphParams dfsph = {};
     ForcesParams forces = {};

@@ -32,6 +32,7 @@ int FluidWorld::lastSubsteps() const { return impl_->clock.lastSubsteps; }
 const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
 const std::vector<BodyState>& FluidWorld::bodies() const { return impl_->bodies.states(); }
 const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodies.loads(); }
+const std::vector<uint32_t>& FluidWorld::bodyIds() const { return impl_->bodies.ids(); }
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
@@ -127,7 +128,7 @@ void FluidWorld::reset() {
         }
         w.bodies.reset();
         w.limits.fastestWall = 0;
-        w.writeStart();
+        w.writeStart(w.insideAdded());
     } catch (const std::bad_alloc&) {
         return;  // lastStep() says so
     }
@@ -177,7 +178,7 @@ Status FluidWorld::setSources(const Sources& next) {
     Impl& w = *impl_;
     if (!next.dry.empty() && w.traits.linked)
         return badInput("fluid.grid linked_list does not support dry volumes: choose fluid.grid sorted");
-    if (Status s = checkDry(next.dry, w.bodies.states().size()); !s) return s;
+    if (Status s = checkDry(next.dry, w.bodies.ids()); !s) return s;
     if (!next.dry.empty())
         if (Status s = w.dry.prepare(*w.device); !s) return s;
     std::vector<EmitterParams> emitters;

@@ -100,11 +100,22 @@ class FluidWorld {
     // may be destroyed when this returns. Nothing else of the world changes: without walls that differ, its steps are the same bit for bit.
     // A wall that is added does not move the water aside. Particles inside it, or behind a plane, are removed if `removeInside`, and their
     // number is added to FluidStats::drained; where memory for that is short they stay, and the log says so. Else they stay, and collisions
-    // push them out through its nearest side or keep them where they are. Error (badInput): fluid.wetness.on is on; the box is periodic
+    // push them out through its nearest side or keep them where they are. With fluid.wetness walls that stay keep their values, and those
+    // that are added are dry. reset() leaves out particles of t = 0 that would be inside a wall. Error (badInput): the box is periodic
     // along all axes and the world was created without walls, so that its kernels have no code for them; as create. (failed): out of
     // memory. Nothing has changed then.
     Status mayChangeWalls() const;  // the first of these
     Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
+
+    // Bodies that are added and removed while the world runs, within fluid.bodies.maxSamples; the others keep their states and loads. Those of
+    // Solids::bodies have the ids 0, 1, ..., others `id`, or one above all before. `body.state`: now, and after a reset. Particles inside
+    // it are removed as by setWalls; without BodyShape::distance, or without `removeInside`, its samples push them out, hard. A saved state
+    // can be restored where the same bodies are. Error (badInput): as create; no room; a sample in a wall; a BodyHost without `added`; no
+    // such id, or one twice; a probe measures the body or a dry volume moves with it; called within a step. (failed): out of memory; as lastStep(). Nothing has changed
+    // then.
+    Result<uint32_t> addBody(const Body& body, bool removeInside = true, std::optional<uint32_t> id = {});
+    Status removeBody(uint32_t id);
+    const std::vector<uint32_t>& bodyIds() const;  // of bodies() and bodyLoads(), in the order in which they were added
 
     // Sets fluid.attributes[attribute] of particles: of those with these ids (ParticleView::id), a value each; or of all that are in a
     // volume now, whose id is not read. Neither waits. Error (badInput): no such attribute or id; a value or volume that is not finite;

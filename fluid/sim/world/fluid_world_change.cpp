@@ -1,7 +1,9 @@
-// What is added to a world and removed from it while it runs: walls, emitters, sinks.
+// What is added to a world and removed from it while it runs: walls, bodies, emitters, sinks.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
@@ -11,8 +13,6 @@ namespace rivulet {
 Status FluidWorld::mayChangeWalls() const {
     if (!impl_->traits.walls)
         return badInput("the box is periodic along all axes, and the world began without walls: create it with a wall");
-    if (impl_->wet)
-        return badInput("fluid.wetness.on: the surfaces that get wet are those at the start: set it to false, or create a new world");
     return ok();
 }
 
@@ -28,8 +28,18 @@ Status FluidWorld::setWalls(const Solids& solids, std::span<const Pose> poses, b
     std::vector<Pose> now(poses.begin(), poses.end());
     if (now.empty())
         for (const RigidSolid& rigid : solids.rigid) now.push_back(rigid.pose);
+    std::optional<WetPasses> wet;
+    if (w.wet) {
+        Result<WetPasses> made =
+            w.wet->with(w.wetParts(WetSurface::partsOf({.field = solids.field, .rigid = solids.rigid})), w.params.spacing);
+        if (!made) return made.error();
+        wet.emplace(std::move(*made));
+    }
     if (Status done = w.solids.replace(solids, now, w.params, w.traits.threadDefines()); !done) return done;
     w.probeTargets = std::move(targets);
+    if (wet) w.wet = std::move(wet);
+    w.change();
+    w.solidsChanged = true;
     w.posesBefore.clear();
     if (w.sleep) w.sleep->disturbAll(w.clock.time);
     if (!w.params.probes.empty())
@@ -38,24 +48,123 @@ Status FluidWorld::setWalls(const Solids& solids, std::span<const Pose> poses, b
             w.report(done.error().message);
         }
     // The walls have changed: what follows may fail, and is then no error of this call.
-    if (removeInside && w.solids.any())
-        if (Status removed = w.removeInside(); !removed) w.log.warning(removed.error().message);
+    if (removeInside && w.solids.anyAdded()) {
+        const auto inside = [&w](const vec3& p) { return w.solids.insideAdded(p, w.params.spacing); };
+        if (Status removed = w.removeInside(inside, "wall"); !removed) w.log.warning(removed.error().message);
+    }
     return ok();
 }
 
-Status FluidWorld::Impl::removeInside() {
-    if (!solids.anyAdded()) return ok();
+std::vector<WetSurface::Part> FluidWorld::Impl::wetParts(std::vector<WetSurface::Part> ofWalls) const {
+    for (size_t k = 0; k < bodies.states().size(); ++k) WetSurface::addBody(ofWalls, bodies.body(k), bodies.ids()[k]);
+    return ofWalls;
+}
+
+Status FluidWorld::Impl::mayChangeBodies() const {
+    if (stepping) return badInput("a step is under way: add and remove bodies between steps");
+    return whole();
+}
+
+// What depends on which bodies there are.
+void FluidWorld::Impl::bodiesChanged() {
+    change();
+    probeTargets.bodies = bodies.ids();
+    dry.bodiesChanged(bodies.ids(), bodies.starts());
+    const std::vector<vec4> matter = bodies.matter();
+    device->write(particles.matterOf, std::as_bytes(std::span(matter)), size_t{slots} * sizeof(vec4));
+    invalidateCells();
+    StepParams s{};
+    s.count = particles.count;
+    grid->fill(s);
+    bodies.place(s, particles);
+}
+
+Result<uint32_t> FluidWorld::addBody(const Body& body, bool removeInside, std::optional<uint32_t> id) {
+    Impl& w = *impl_;
+    const uint32_t own = id.value_or(w.bodies.nextId());
+    if (Status may = w.mayChangeBodies(); !may) return may.error();
+    if (Status sound = BodyPasses::check(body); !sound) return sound.error();
+    for (const vec3& sample : body.meetsWater ? body.shape.samples : std::vector<vec3>())
+        if (const vec3 p = body.state.pose.toWorld(sample); !w.solids.maySpawn(p, w.params.spacing, 0))
+            return badInput(
+                fmt::format("the body would be inside a wall, at ({:.3g}, {:.3g}, {:.3g}) m: place it elsewhere", p.x, p.y, p.z));
+    std::optional<WetPasses> wet;
+    if (w.wet) {
+        std::vector<WetSurface::Part> parts = w.wetParts(w.solids.wetParts());
+        WetSurface::addBody(parts, body, own);
+        Result<WetPasses> made = w.wet->with(parts, w.params.spacing);
+        if (!made) return made.error();
+        wet.emplace(std::move(*made));
+    }
+    w.device->goOn();
+    if (Status added = w.bodies.add(body, own, w.params); !added) return added.error();
+    if (wet) w.wet = std::move(wet);
+    w.solidsChanged = true;
+    w.bodiesChanged();
+    const size_t last = w.bodies.states().size() - 1;
+    if (w.sleep && body.meetsWater) w.disturbAround(w.bodies.boundsOf(last));
+    if (removeInside && body.meetsWater && body.shape.distance) {
+        const auto inside = [&w, last](const vec3& p) { return w.bodies.inside(last, p, w.params.spacing); };
+        if (Status removed = w.removeInside(inside, "body"); !removed) w.log.warning(removed.error().message);
+    }
+    return own;
+}
+
+Status FluidWorld::removeBody(uint32_t id) {
+    Impl& w = *impl_;
+    if (Status may = w.mayChangeBodies(); !may) return may;
+    const std::vector<uint32_t>& ids = w.bodies.ids();
+    const auto at = static_cast<size_t>(std::ranges::find(ids, id) - ids.begin());
+    if (at == ids.size()) return badInput(fmt::format("there is no body {}", id));
+    for (size_t k = 0; k < w.dry.params().size(); ++k)
+        if (w.dry.params()[k].body == static_cast<int>(id))
+            return badInput(fmt::format("dry[{}] moves with body {}: remove the dry volume first", k, id));
+    bool probed = false;
+    for (size_t k = 0; k < w.params.probes.size(); ++k) {
+        const ProbeParams& p = w.params.probes[k];
+        if (p.on != "body") continue;
+        probed = true;
+        if (p.index == static_cast<int>(id) || ids.size() == 1)
+            return badInput(fmt::format("fluid.probes[{}] measures body {}: remove the probe first", k, id));
+    }
+    std::optional<WetPasses> wet;
+    if (w.wet) {
+        std::vector<WetSurface::Part> parts = w.solids.wetParts();
+        for (size_t k = 0; k < ids.size(); ++k)
+            if (k != at) WetSurface::addBody(parts, w.bodies.body(k), ids[k]);
+        Result<WetPasses> made = w.wet->with(parts, w.params.spacing);
+        if (!made) return made.error();
+        wet.emplace(std::move(*made));
+    }
+    w.device->goOn();
+    const Bounds place = w.bodies.boundsOf(at);
+    if (Status gone = w.bodies.remove(at); !gone) return gone;
+    if (wet) w.wet = std::move(wet);
+    w.bodiesChanged();
+    if (w.sleep) {
+        w.disturbAround(place);
+        if (std::vector<Pose>& poses = w.sleep->bodyPoses(); at < poses.size())
+            poses.erase(poses.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    if (probed)  // they name bodies by their places among the others
+        if (Status done = w.prepareProbes(w.params); !done) {
+            w.probes.reset();
+            w.report(done.error().message);
+        }
+    return ok();
+}
+
+Status FluidWorld::Impl::removeInside(const std::function<bool(const vec3&)>& within, const char* what) {
     std::vector<uint32_t> inside;
     std::vector<NamedBuffer> remembered;
     try {
         const std::vector<vec4> read = device->readAll<vec4>(particles.positionNext, particles.count);
         const std::vector<uint32_t> id = device->readAll<uint32_t>(particles.id, particles.count);
         for (uint32_t k = 0; k < particles.count; ++k)
-            if (const vec4& p = read[k]; !(p.w < 0) && id[k] < slots && isFinite(vec3(p)) && solids.insideAdded(vec3(p), params.spacing))
-                inside.push_back(k);
+            if (const vec4& p = read[k]; !(p.w < 0) && id[k] < slots && isFinite(vec3(p)) && within(vec3(p))) inside.push_back(k);
         remembered = method->remembered();
     } catch (const std::bad_alloc&) {
-        return noMemory("there is not enough memory to find the particles inside a wall: they stay");
+        return noMemory(fmt::format("there is not enough memory to find the particles inside a {}: they stay", what));
     }
     if (inside.empty()) return ok();
     Result<ExchangePasses> passes = ExchangePasses::create(*device);
@@ -72,13 +181,13 @@ Status FluidWorld::Impl::removeInside() {
     if (sleep) sleep->slotsChange();
     grid->sortAsleep();
     fillLedger(*figures);
-    log.notice(fmt::format("{} particles were removed: a wall is now where they were", inside.size()));
+    log.notice(fmt::format("{} particles were removed: a {} is now where they were", inside.size(), what));
     return ok();
 }
 
 void FluidWorld::Impl::setDry(const std::vector<DryParams>& volumes) {
     if (volumes.empty() && !dry.any()) return;
-    dry.set(volumes, bodies.starts(), bodies.states());
+    dry.set(volumes, bodies.ids(), bodies.starts(), bodies.states());
     hasFree = true;
     if (sleep) sleep->disturbAll(clock.time);
 }

@@ -1,6 +1,7 @@
 // FluidWorld::Impl: the parts of a world, only for fluid_world*.cpp: created in _start, stepped in _step, saved in _state.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,6 +109,8 @@ struct FluidWorld::Impl {
     WorldClock clock;
     bool cellsValid = false;        // since cellWork()
     bool interrupted = false;       // the last step was, or the last return to valid values
+    bool stepping = false;          // step() is under way
+    bool solidsChanged = false;     // since the world was created
     bool changing = false;          // a change of the values is under way; stays true if it did not complete
     Status last = ok();             // of step() or reset()
     std::optional<Error> shortage;  // memory that this frame, or the start, lacks
@@ -119,8 +122,8 @@ struct FluidWorld::Impl {
     Status prepareProbes(const FluidParams& next);
     Status replaceSources(const Sources& next);
     void setDry(const std::vector<DryParams>& volumes);  // sound ones
-    Status removeInside();                               // particles inside a wall
-    Status mayLink() const;                              // Error: fluid.grid linked_list does not support a feature of the scene
+    Status removeInside(const std::function<bool(const vec3&)>& inside, const char* what);  // particles
+    Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     Status checkStart() const;
     void fillStart();
@@ -136,7 +139,11 @@ struct FluidWorld::Impl {
     }
     Status findSlots();
     void findLiquids();
-    void writeStart();
+    void writeStart(const std::vector<bool>& leftOut = {});  // `leftOut`: of the particles of `start`
+    std::vector<bool> insideAdded();
+    Status mayChangeBodies() const;
+    void bodiesChanged();
+    std::vector<WetSurface::Part> wetParts(std::vector<WetSurface::Part> ofWalls) const;  // with the bodies
     void writeAttributes();
     void gatherForDrawing();
     void attributesChanged();

@@ -9,6 +9,7 @@
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 #include "fluid/sim/world/start_surface.h"
+#include "shaders/fluid/solids/body_state.h"
 #include "shaders/fluid/world/stats_row.h"
 
 namespace rivulet {
@@ -35,10 +36,10 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     traits.sleeps = params.sleep.on;
     traits.asleepRows = traits.sleeps && device->backend() != Backend::cpu;
     traits.follows = sourceSetup.expectedDeposit == 0 && !traits.sleeps;  // deposits come at any place
-    if (Status s = checkDry(sourceSetup.dry, bodies.states().size()); !s) return s;
+    if (Status s = checkDry(sourceSetup.dry, bodies.ids()); !s) return s;
     if (!sourceSetup.dry.empty()) {
         if (Status s = dry.prepare(*device); !s) return s;
-        dry.set(sourceSetup.dry, bodies.starts(), bodies.states());
+        dry.set(sourceSetup.dry, bodies.ids(), bodies.starts(), bodies.states());
     }
     // Before millions of particles are made.
     if (Status s = NeighborGrid::checkCells(Bounds{params.box.min, params.box.max}, h, wanted, traits); !s) return s;
@@ -53,7 +54,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
         bool wanted;
     };
     const Define fromPositions{"FROM_POSITIONS", "1"};
-    traits.matter = traits.matter || bodies.any();
+    traits.matter = traits.matter || traits.samples > 0;
     for (const Wanted& w : {Wanted{&stats, "fluid/world/stats",
                                    traits.matter   ? std::vector<Define>{{"MATTER", "1"}}
                                    : traits.linked ? std::vector<Define>{{"LINKED_LIST", "1"}}
@@ -253,6 +254,19 @@ bool FluidWorld::Impl::startsClosed() const {
                            [&](const vec3& p) { return solids.maySpawn(p, params.spacing) && bodies.maySpawn(p, params.spacing, 1); });
 }
 
+// Which particles of t = 0 are inside solids that were added since. Empty: none.
+std::vector<bool> FluidWorld::Impl::insideAdded() {
+    if (!solidsChanged) return {};
+    std::vector<bool> inside(start.size());
+    for (size_t k = 0; k < start.size(); ++k)
+        inside[k] = !solids.maySpawn(start[k].position, params.spacing, 0) || bodies.insideAdded(start[k].position, params.spacing);
+    const auto count = std::ranges::count(inside, true);
+    if (count == 0) return {};
+    hasFree = true;
+    log.notice(fmt::format("{} particles of t = 0 are inside solids that were added since: they were left out", count));
+    return inside;
+}
+
 // The number of slots.
 Status FluidWorld::Impl::findSlots() {
     const double held = static_cast<double>(start.size()), wanted = SourcePasses::slotsFor(sourceSetup, params);
@@ -295,7 +309,7 @@ void FluidWorld::Impl::findLiquids() {
                 std::max(mostViscous, 2 * a.viscosity * b.viscosity / std::max((a.viscosity + b.viscosity) * a.density, 1.0e-30F));
 }
 
-void FluidWorld::Impl::writeStart() {
+void FluidWorld::Impl::writeStart(const std::vector<bool>& leftOut) {
     // Piece by piece, so that a large world does not stand in memory twice.
     constexpr uint32_t kPiece = 65536;
     std::vector<vec4> position, velocity;
@@ -307,12 +321,12 @@ void FluidWorld::Impl::writeStart() {
         id.clear();
         for (uint32_t k = first; k < std::min(first + kPiece, particles.count); ++k) {
             id.push_back(k);
-            if (k < start.size()) {
+            if (k < start.size() && (leftOut.empty() || !leftOut[k])) {
                 position.emplace_back(start[k].position, 1.0F);
                 velocity.emplace_back(start[k].velocity, 0.0F);
             } else {
                 // A free slot, or a sample on a body: these come last, and each substep puts them where they are.
-                position.emplace_back(k < slots ? params.box.min : vec3(0.0F), -1.0F);
+                position.emplace_back(k < slots ? params.box.min : vec3(NOWHERE), -1.0F);
                 velocity.emplace_back(0.0F);
             }
         }
@@ -363,7 +377,7 @@ void FluidWorld::Impl::writeStart() {
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
     method->reset();
     figures = std::make_shared<FluidStats>();
-    startCount = static_cast<uint32_t>(start.size());
+    startCount = static_cast<uint32_t>(start.size() - static_cast<size_t>(std::ranges::count(leftOut, true)));
     figures->particles = startCount;
     // The first step needs it, too.
     for (const NewParticle& p : start) limits.fastestStart = std::max(limits.fastestStart, glm::length(p.velocity));

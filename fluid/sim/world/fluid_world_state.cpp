@@ -86,7 +86,9 @@ Status FluidWorld::restore(WorldState& state) {
     if (limited->size() > kLongestText ||
         std::ranges::any_of(*limited, [](char c) { return c != '\n' && static_cast<unsigned char>(c) < ' '; }))
         return badInput("section world.limited of the saved state is not a text: save it again");
-    Result<Particles::Saved> saved = w.particles.take(state, w.reachable(), w.bodies.matter());
+    Result<BodyPasses::Saved> bodies = w.bodies.take(state);
+    if (!bodies) return bodies.error();
+    Result<Particles::Saved> saved = w.particles.take(state, w.reachable(), w.bodies.matter(bodies->first));
     if (!saved) return saved.error();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     std::vector<std::vector<float>> memory;
@@ -140,8 +142,6 @@ Status FluidWorld::restore(WorldState& state) {
     }
     Result<VolumePasses::Saved> volumes = VolumePasses::take(state, w.slots);
     if (!volumes) return volumes.error();
-    Result<BodyPasses::Saved> bodies = w.bodies.take(state);
-    if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
     if (!volumes->volumes.empty())
         if (Status room = w.volumes.prepare(*w.device, w.slots); !room) return room;

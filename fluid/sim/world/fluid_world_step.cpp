@@ -146,6 +146,14 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     const bool lacked = w.shortage.has_value();
     w.shortage.reset();
     int substeps = 0;
+    struct Stepping {  // ends when a function of the host throws, too
+        bool& on;
+        explicit Stepping(bool& flag) : on(flag) { on = true; }
+        ~Stepping() { on = false; }
+        Stepping(const Stepping&) = delete;
+        Stepping& operator=(const Stepping&) = delete;
+    };
+    std::optional<Stepping> stepping(w.stepping);
     try {
         if (Status room = w.prepareFrame(); room)
             substeps = w.stepFrame(inputs, seconds);
@@ -154,6 +162,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     } catch (const std::bad_alloc&) {
         w.shortage = w.changing ? w.whole().error() : noMemory("there is not enough memory for a step: use fewer particles");
     }
+    stepping.reset();
     if (!w.shortage) return;
     w.last = *w.shortage;
     if (substeps == 0 && w.whole()) {  // as it was before

@@ -5,6 +5,7 @@
 namespace rivulet {
 #endif
 CONSTANT(uint, LOAD_THREADS, 64u);  // a body
+CONSTANT(float, NOWHERE, 1.0e9f);   // m: where samples of no body are, beyond every grid
 STRUCT(DeviceBody) {
     vec4 position;     // m, centre of mass
     vec4 rotation;     // unit quaternion, w last

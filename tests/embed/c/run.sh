@@ -48,7 +48,7 @@ for name in $shown; do
     grep -qx "$name" <<<"$declared" || { echo "$name is not in rivulet.h"; exit 1; }
 done
 
-for program in main couple faults jobs walls gl scene many lost overlap attributes; do
+for program in main couple faults jobs walls bodies gl scene many lost overlap attributes; do
     packages=rivulet
     case $program in gl|scene|many|lost|overlap|attributes) packages="rivulet egl gl" ;; esac
     read -ra flags <<<"$(pkg-config --cflags --libs $packages)"
@@ -64,6 +64,7 @@ cxx=(c++ -O1)
 "$work/throws"
 "$work/jobs"
 "$work/walls"
+"$work/bodies"
 # Loaded and unloaded by dlopen. A sanitizer's own library cannot be loaded late.
 runs=(gl scene many lost attributes "overlap $work")
 if [ "${cc[0]}" = cc ]; then

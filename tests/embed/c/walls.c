@@ -227,12 +227,123 @@ static void what_cannot_be_is_refused(rivulet_context* context) {
     wall.resolution = 0;
     wall.indices_count = 4;
     REFUSED(rivulet_world_add_wall(world, &wall, &id, &why), "three");
-    rivulet_world_destroy(world);
-    const rivulet_world_options wet = {.size = sizeof wet, .json = "{\"fluid\": {\"wetness\": {\"on\": true}}}"};
-    DONE(rivulet_world_create(context, &wet, &world, &why));
     wall.indices_count = 36;
-    REFUSED(rivulet_world_add_wall(world, &wall, &id, &why), "wetness");
-    REFUSED(rivulet_world_remove_wall(world, 0, &why), "wetness");
+    wall.layers = 1U << 16;
+    REFUSED(rivulet_world_add_wall(world, &wall, &id, &why), "16 layers");
+    wall.layers = 0;
+    wall.moves = 3;
+    REFUSED(rivulet_world_add_wall(world, &wall, &id, &why), "moves");
+    rivulet_world_destroy(world);
+}
+
+/* A sheet that is added while the world runs holds the water, and gives it room where it is bent to. */
+static void a_sheet_is_added(rivulet_context* context) {
+    float places[12] = {0.32F, -0.1F, -0.1F, 0.32F, 0.7F, -0.1F, 0.32F, 0.7F, 0.35F, 0.32F, -0.1F, 0.35F};
+    const uint32_t both[6] = {0, 1, 2, 0, 2, 3};
+    const rivulet_mesh sheet = {.size = sizeof sheet,
+                                .positions = places,
+                                .vertices = 4,
+                                .indices = both,
+                                .indices_count = 6,
+                                .friction = -1,
+                                .restitution = -1,
+                                .moves = 2,
+                                .reach_low = {0.2F, -0.15F, -0.15F},
+                                .reach_high = {0.7F, 0.75F, 0.4F}};
+    rivulet_world* world = tank(context, NULL, 0);
+    run(world, 1);
+    uint32_t id = 9;
+    DONE(rivulet_world_add_wall(world, &sheet, &id, &why));
+    CHECK(id == 0);
+    const float* shapes[1] = {places};
+    rivulet_inputs in = {.size = sizeof in, .shapes = shapes, .shapes_count = 0};
+    REFUSED(rivulet_world_step(world, &in, 1.0 / 60, &why), "0 shapes were given for 1 walls");
+    in.shapes_count = 1;
+    wait_for_bake(world, id);
+    run(world, 30);
+    const size_t before = count_of(world);
+    CHECK(farthest(world) < 0.32F);
+    for (int k = 0; k < 30; ++k) {
+        for (int corner = 0; corner < 4; ++corner) places[3 * corner] += 0.005F;
+        DONE(rivulet_world_step(world, &in, 1.0 / 60, &why));
+    }
+    run(world, 30);
+    CHECK(farthest(world) > 0.4F && farthest(world) < 0.47F && count_of(world) == before);
+    DONE(rivulet_world_remove_wall(world, id, &why));
+    run(world, 30);
+    CHECK(farthest(world) > 0.8F && count_of(world) == before);
+    rivulet_world_destroy(world);
+}
+
+/* After a reset no water of t = 0 stands inside a wall that was added since; a wall that the water does not meet does not hold it. */
+static void a_reset_leaves_out_what_is_inside(rivulet_context* context) {
+    struct box shape;
+    const float low[3] = {0.1F, 0, 0.05F}, high[3] = {0.2F, 0.2F, 0.2F};
+    rivulet_mesh block = box_of(&shape, low, high);
+    rivulet_world* world = tank(context, NULL, 0);
+    const size_t all = count_of(world);
+    uint32_t id = 0;
+    DONE(rivulet_world_add_wall(world, &block, &id, &why));
+    wait_for_bake(world, id);
+    DONE(rivulet_world_reset(world, &why));
+    size_t inside = 0;
+    const size_t after = count_of(world);
+    for (size_t k = 0; k < after; ++k) {
+        const float* p = positions + 3 * k;
+        inside += p[0] > low[0] && p[0] < high[0] && p[1] < high[1] && p[2] > low[2] && p[2] < high[2];
+    }
+    const double gone = (double)(all - after) * 0.025 * 0.025 * 0.025, volume = 0.1 * 0.2 * 0.15;
+    CHECK(inside == 0 && gone > 0.8 * volume && gone < 2 * volume);
+    run(world, 30);
+    rivulet_stats stats = {.size = sizeof stats};
+    DONE(rivulet_world_stats(world, &stats, &why));
+    CHECK(stats.particles == after && stats.lost == 0 && stats.maximum_speed < 4);
+    DONE(rivulet_world_remove_wall(world, id, &why));
+    DONE(rivulet_world_reset(world, &why));
+    CHECK(count_of(world) == all);
+    rivulet_world_destroy(world);
+
+    rivulet_mesh gate = box_of(&shape, kGateLow, kGateHigh);
+    gate.meets = 2; /* the water is on the first layer */
+    world = tank(context, &gate, 1);
+    DONE(rivulet_world_add_wall(world, &gate, &id, &why));
+    CHECK(id == 1 && state_of(world, 0) == RIVULET_WALL_ACTS && state_of(world, 1) == RIVULET_WALL_ACTS);
+    run(world, 30);
+    CHECK(farthest(world) > 0.8F && count_of(world) == all);
+    DONE(rivulet_world_remove_wall(world, 0, &why));
+    rivulet_world_destroy(world);
+}
+
+/* Walls come and go while wetness is on: what is wet stays wet, what is new is dry. */
+static void wetness_stays(rivulet_context* context) {
+    struct box gate, post;
+    const float low[3] = {0.9F, -0.1F, 0.1F}, high[3] = {0.95F, 0.5F, 0.15F}, at[6] = {0.3F, 0.1F, 0.125F, 0.9F, 0.1F, 0.125F};
+    const rivulet_mesh walls[1] = {box_of(&gate, kGateLow, kGateHigh)}, added = box_of(&post, low, high);
+    rivulet_world* world = NULL;
+    const rivulet_world_options o = {
+        .size = sizeof o,
+        .json =
+            "{\"fluid\": {\"spacing\": 0.025, \"box\": {\"max\": [1, 0.6, 0.25]}, \"wetness\": {\"on\": true, \"dries\": 1000}, "
+            "\"blocks\": [{\"max\": [0.28, 0.4, 0.25]}]}}",
+        .walls = walls,
+        .walls_count = 1};
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    run(world, 10);
+    float before[2] = {9, 9}, after[2] = {9, 9};
+    DONE(rivulet_world_wetness(world, at, 2, before, &why));
+    CHECK(before[0] > 0.5F && before[1] == 0);
+    uint32_t id = 0;
+    DONE(rivulet_world_add_wall(world, &added, &id, &why));
+    wait_for_bake(world, id);
+    DONE(rivulet_world_wetness(world, at, 2, after, &why));
+    CHECK(after[0] > 0.99F * before[0] && after[1] == 0);
+    rivulet_wet_solid solid = {.size = sizeof solid};
+    DONE(rivulet_world_wet_solid(world, RIVULET_WALL, id, &solid, &why));
+    /* The gate leaves, the post gets wet. */
+    DONE(rivulet_world_remove_wall(world, 0, &why));
+    run(world, 60);
+    DONE(rivulet_world_wetness(world, at, 2, after, &why));
+    CHECK(after[0] == 0 && after[1] > 0.5F);
     rivulet_world_destroy(world);
 }
 
@@ -256,6 +367,9 @@ int main(void) {
     a_paddle_is_added(context);
     a_bake_may_end_early(context);
     sources_come_and_go(context);
+    a_sheet_is_added(context);
+    a_reset_leaves_out_what_is_inside(context);
+    wetness_stays(context);
     what_cannot_be_is_refused(context);
     rivulet_context_destroy(context);
     int started = 0;

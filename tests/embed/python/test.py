@@ -228,6 +228,28 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         world.reset()
         assert hand.resets >= 1
 
+    # A crate, a mesh with a density, is thrown in, floats with its weight as load, and is removed.
+    corners = np.array([(x, y, z) for x in (-0.1, 0.1) for y in (-0.06, 0.06) for z in (-0.1, 0.1)])
+    faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+    crate = rivulet.Body(mesh=rivulet.Mesh(corners, faces), density=500, position=(0.3, 0.6, 0.3), velocity=(0, -0.5, 0))
+    roomy = {"fluid": {**pool["fluid"], "bodies": {"maxSamples": 1000}}}
+    with context.world(roomy) as world:
+        first, second = world.add_body(crate), world.add_body(rivulet.Body(cube, 3, (0.016,) * 3, 0.18**3, (0.15, 0.8, 0.15), layers=2, meets=2))
+        assert (first, second) == (0, 1) and list(world.body_ids()) == [1]
+        while world.body(first) is None:
+            world.step(0)
+        assert world.body(first)[0]["velocity"][1] == -0.5 and list(world.body_ids()) == [1, 0]
+        world.remove_body(second)
+        lifts = []
+        for frame in range(120):
+            world.step(1 / 60)
+            lifts.append(world.body(first)[1]["force"][1])
+        weight = 500 * 9.81 * 0.2 * 0.2 * 0.12
+        assert abs(np.mean(lifts[60:]) - weight) < 0.1 * weight, (np.mean(lifts[60:]), weight)
+        world.remove_body(first)
+        assert len(world.bodies()) == 0
+        refused(lambda: world.remove_body(first), "no body 0")
+
     # What a host keeps of what it was handed stays what it was.
     class Keeper:
         loads, states = [], []

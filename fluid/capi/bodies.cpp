@@ -1,0 +1,335 @@
+#include "fluid/capi/bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "fluid/capi/call.h"
+#include "fluid/capi/callbacks.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
+#include "fluid/capi/walls.h"
+#include "fluid/sim/world/contradictions.h"
+#include "fluid/voxel/voxel_field.h"
+
+namespace rivulet::capi {
+
+namespace {
+
+constexpr const char* kStay = "; the bodies stay where they are";
+
+bool isOrigin(const Pose& frame) { return frame.position == vec3(0.0F) && frame.rotation == quat(1, 0, 0, 0); }
+
+// Between the pose of a body's own frame and that of its mesh's frame, in which `frame` is the own one.
+Pose toMesh(const Pose& own, const Pose& frame) {
+    if (isOrigin(frame)) return own;
+    const quat turn = glm::normalize(own.rotation * glm::conjugate(frame.rotation));
+    return {own.position - turn * frame.position, turn};
+}
+Pose toOwn(const Pose& mesh, const Pose& frame) {
+    if (isOrigin(frame)) return mesh;
+    return {mesh.position + mesh.rotation * frame.position, glm::normalize(mesh.rotation * frame.rotation)};
+}
+
+// The distance from a mesh, by voxels: as BodyShape::distance, but no more than their band.
+Result<std::function<float(const vec3&)>> distanceOf(const HostMesh& mesh, const VoxelFieldOptions& options) {
+    const MeshView view = mesh.view();
+    Result<VoxelField> baked = bakeVoxelField(std::span(&view, 1), options);
+    if (!baked) return baked.error();
+    auto field = std::make_shared<const VoxelField>(std::move(*baked));
+    return std::function<float(const vec3&)>(
+        [field](const vec3& p) { return field->inside(p) ? -std::abs(field->clearance(p)) : field->clearance(p); });
+}
+
+}  // namespace
+
+Result<Bodies::Read> Bodies::read(const rivulet_body& given, const std::string& name, bool bakes) const {
+    const Result<rivulet_body> input = readStruct(&given, "rivulet_body", name);
+    if (!input) return input.error();
+    const rivulet_body& b = *input;
+    const bool sampled = b.samples != nullptr && b.samples_count > 0;
+    if (!sampled && b.mesh == nullptr)
+        return badInput(
+            fmt::format("{} has no samples: give points below its surface, about a spacing apart, or a mesh and a density", name));
+    if (!sampled && !(b.density > 0 && std::isfinite(b.density)))
+        return badInput(fmt::format("{}.density is {} kg/m^3: give more than 0, or samples and a mass", name, b.density));
+    if (sampled && b.density != 0) return badInput(fmt::format("{} has samples and a density: give one of them", name));
+    Read read;
+    BodyShape& shape = read.body.shape;
+    for (size_t i = 0; sampled && i < b.samples_count; ++i) shape.samples.push_back(vectorOf(b.samples + 3 * i));
+    shape.mass = b.mass;
+    shape.inertia = vectorOf(b.inertia);
+    shape.volume = b.volume;
+    const Result<Pose> pose = soundPose(b.pose, name + ".pose");
+    if (!pose) return pose.error();
+    read.body.state = {*pose, vectorOf(b.velocity), vectorOf(b.spin)};
+    if (const std::string wrong = outside(name + ".pose.position", pose->position, box_); !wrong.empty()) return badInput(wrong);
+    const Result<LayersParams> layers = layersOf(b.layers, b.meets, name);
+    if (!layers) return layers.error();
+    read.body.meetsWater = water_.meet(*layers);
+    if (b.mesh == nullptr) return read;
+    const Result<rivulet_mesh> mesh = readStruct(b.mesh, "rivulet_mesh", name + ".mesh");
+    if (!mesh) return mesh.error();
+    Result<HostMesh> copy = meshOf(*mesh, name + ".mesh");
+    if (!copy) return copy.error();
+    if (sampled) shape.shell = [mesh = *copy](float apart) { return meshShell(mesh.view(), apart); };
+    if (sampled && !bakes) return read;
+    Bounds bounds;
+    for (const vec3& p : copy->positions) bounds.add(p);
+    const VoxelFieldOptions options = voxelOptions(bounds, mesh->resolution, spacing_, memoryLimit_);
+    const MeshView view = copy->view();
+    if (Status sound = checkVoxelField(std::span(&view, 1), options); !sound) return sound.error();
+    read.make = [mesh = std::move(*copy), options, sampled, own = shape, density = b.density,
+                 spacing = spacing_]() mutable -> Result<Made> {
+        Made made{std::move(own), {}};
+        if (!sampled) {
+            Result<MeshBody> body = meshShape(mesh.view(), double{density}, spacing);
+            if (!body) return body.error();
+            made = {std::move(body->shape), body->frame};
+            for (vec3& p : mesh.positions) p = made.frame.toOwn(p);
+        }
+        Result<std::function<float(const vec3&)>> distance = distanceOf(mesh, options);
+        if (!distance) return distance.error();
+        made.shape.distance = std::move(*distance);
+        return made;
+    };
+    return read;
+}
+
+void Bodies::finish(Body& body, Made made) {
+    body.state.pose = toOwn(body.state.pose, made.frame);
+    body.shape = std::move(made.shape);
+}
+
+Status Bodies::begin(const rivulet_world_options& o, const FluidParams& fluid, const Jobs& jobs, size_t memoryLimit, Callback& callback,
+                     Solids& to) {
+    spacing_ = fluid.spacing;
+    box_ = fluid.box;
+    water_ = fluid.collision.layers;
+    jobs_ = jobs;
+    memoryLimit_ = memoryLimit;
+    callback_ = &callback;
+    if (o.bodies_count > 0 && o.bodies == nullptr) return badInput("bodies is NULL, and bodies_count is not 0");
+    const auto* at = reinterpret_cast<const std::byte*>(o.bodies);
+    for (size_t k = 0; k < o.bodies_count; ++k) {
+        const std::string name = fmt::format("bodies[{}]", k);
+        const auto* given = reinterpret_cast<const rivulet_body*>(at);
+        Result<Read> body = read(*given, name, false);
+        if (!body) return body.error();
+        Pose frame;
+        if (body->make) {
+            Result<Made> made = body->make();
+            if (!made) return Error{fmt::format("{}.mesh: {}", name, made.error().message), made.error().fault};
+            frame = made->frame;
+            finish(body->body, std::move(*made));
+        }
+        to.bodies.push_back(std::move(body->body));
+        frames_.push_back(frame);
+        inWorld_.push_back(next_++);
+        at += given->size;
+    }
+    const Result<rivulet_body_host> hosting = readStruct(o.body_host, "rivulet_body_host", "body_host");
+    if (!hosting) return hosting.error();
+    host_ = *hosting;
+    if ((host_.advance == nullptr) != (host_.reset == nullptr))
+        return badInput("body_host has one of advance and reset: give both or neither");
+    if (host_.advance != nullptr) to.bodyHost = host();
+    return ok();
+}
+
+// Runs `call`, a function of the host. What it throws is kept, for the call that is under way.
+template <class Call>
+void Bodies::callHost(const char* name, const Call& call) {
+    const CallbackScope scope(*callback_);
+    try {
+        call();
+    } catch (const std::exception& e) {
+        thrown_ = fmt::format("body_host.{} threw an exception: {}", name, e.what());
+    } catch (...) {
+        thrown_ = fmt::format("body_host.{} threw an exception", name);
+    }
+}
+
+Status Bodies::thrown() {
+    if (thrown_.empty()) return ok();
+    return failed(std::exchange(thrown_, {}) + kStay);
+}
+
+void Bodies::toStates(std::span<const BodyState> from) {
+    states_.clear();
+    for (size_t k = 0; k < from.size(); ++k) states_.push_back(stateOf(k, from[k]));
+}
+
+rivulet_body_state Bodies::stateOf(size_t place, const BodyState& s) const {
+    return {poseOf(toMesh(s.pose, frames_[place])), {s.velocity.x, s.velocity.y, s.velocity.z}, {s.spin.x, s.spin.y, s.spin.z}};
+}
+
+BodyHost Bodies::host() {
+    BodyHost h;
+    h.self = this;
+    h.advance = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
+        Bodies& b = *static_cast<Bodies*>(self);
+        if (!b.thrown_.empty()) return;
+        b.loads_.clear();
+        for (const BodyLoad& l : loads) b.loads_.push_back({{l.force.x, l.force.y, l.force.z}, {l.torque.x, l.torque.y, l.torque.z}});
+        b.toStates(states);
+        const float g[3] = {gravity.x, gravity.y, gravity.z};
+        b.callHost("advance", [&] { b.host_.advance(b.host_.user, b.loads_.data(), g, seconds, b.states_.data(), states.size()); });
+        if (!b.thrown_.empty()) return;
+        for (size_t k = 0; k < states.size(); ++k)
+            states[k] = {toOwn(poseOf(b.states_[k].pose), b.frames_[k]), vectorOf(b.states_[k].velocity), vectorOf(b.states_[k].spin)};
+    };
+    h.reset = [](void* self, std::span<const BodyState> states) {
+        Bodies& b = *static_cast<Bodies*>(self);
+        b.toStates(states);
+        b.callHost("reset", [&] { b.host_.reset(b.host_.user, b.states_.data(), states.size()); });
+    };
+    // An exception here leaves the body where it is: in the world, or not.
+    h.added = [](void* self, uint32_t id, const Body& body) {
+        Bodies& b = *static_cast<Bodies*>(self);
+        if (b.host_.added == nullptr) return;
+        const rivulet_body_state state = b.stateOf(b.frames_.size() - 1, body.state);
+        b.callHost("added", [&] { b.host_.added(b.host_.user, id, &state); });
+        if (!b.thrown_.empty()) throw std::runtime_error(std::exchange(b.thrown_, {}));
+    };
+    h.removed = [](void* self, uint32_t id, size_t) {
+        Bodies& b = *static_cast<Bodies*>(self);
+        if (b.host_.removed == nullptr) return;
+        b.callHost("removed", [&] { b.host_.removed(b.host_.user, id); });
+        if (!b.thrown_.empty()) throw std::runtime_error(std::exchange(b.thrown_, {}));
+    };
+    return h;
+}
+
+Status Bodies::enter(FluidWorld& world, uint32_t id, const Body& body, const Pose& frame) {
+    const size_t count = inWorld_.size();
+    inWorld_.reserve(count + 1);
+    frames_.push_back(frame);  // `added` reads it
+    try {
+        if (const Result<uint32_t> added = world.addBody(body, true, id); !added) {
+            frames_.resize(count);
+            return added.error();
+        }
+    } catch (...) {
+        frames_.resize(count);
+        throw;
+    }
+    inWorld_.push_back(id);
+    return ok();
+}
+
+Result<uint32_t> Bodies::add(FluidWorld& world, const rivulet_body& given) {
+    frames_.resize(inWorld_.size());  // a function of the host may have been left by longjmp
+    Result<Read> body = read(given, "body", true);
+    if (!body) return body.error();
+    if (body->make == nullptr) {
+        if (Status in = enter(world, next_, body->body, {}); !in) return in.error();
+        return next_++;
+    }
+    Waiting one{.id = next_, .body = std::move(body->body), .make = nullptr, .failure = {}};
+    one.make = std::make_unique<Background<Made>>(std::move(body->make), jobs_);
+    waiting_.push_back(std::move(one));
+    return next_++;
+}
+
+Status Bodies::remove(FluidWorld& world, uint32_t id) {
+    frames_.resize(inWorld_.size());
+    if (const auto at = std::ranges::find(waiting_, id, &Waiting::id); at != waiting_.end()) {
+        waiting_.erase(at);
+        return ok();
+    }
+    const auto place = std::ranges::find(inWorld_, id) - inWorld_.begin();
+    if (Status gone = world.removeBody(id); !gone) return gone;
+    inWorld_.erase(inWorld_.begin() + place);
+    frames_.erase(frames_.begin() + place);
+    return ok();
+}
+
+std::vector<std::string> Bodies::arrive(FluidWorld& world) {
+    frames_.resize(inWorld_.size());
+    std::vector<std::string> wrong;
+    for (Waiting& w : waiting_) {
+        if (w.make == nullptr || !w.make->done()) continue;
+        Result<Made> made = w.make->take();
+        w.make.reset();
+        const Pose frame = made ? made->frame : Pose{};
+        if (made) finish(w.body, std::move(*made));
+        if (const Status in = made ? enter(world, w.id, w.body, frame) : Status(made.error()); !in) {
+            w.failure = in.error().message;
+            wrong.push_back(fmt::format("body {}: {}", w.id, w.failure));
+        }
+    }
+    std::erase_if(waiting_, [](const Waiting& w) { return w.make == nullptr && w.failure.empty(); });
+    return wrong;
+}
+
+Result<std::optional<size_t>> Bodies::placeOf(uint32_t id) const {
+    if (const auto at = std::ranges::find(inWorld_, id); at != inWorld_.end())
+        return std::optional(static_cast<size_t>(at - inWorld_.begin()));
+    const auto waits = std::ranges::find(waiting_, id, &Waiting::id);
+    if (waits == waiting_.end()) return badInput(fmt::format("there is no body {}", id));
+    if (!waits->failure.empty()) return failed(fmt::format("body {}: {}", id, waits->failure));
+    return std::optional<size_t>();
+}
+
+}  // namespace rivulet::capi
+
+using namespace rivulet;
+using namespace rivulet::capi;
+
+rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        const std::vector<BodyState>& bodies = world->world->bodies();
+        if (states == nullptr) return badInput("states is NULL");
+        if (count != bodies.size()) return badInput(fmt::format("count is {}, and there are {} bodies", count, bodies.size()));
+        for (size_t k = 0; k < count; ++k) states[k] = world->bodies.stateOf(k, bodies[k]);
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_add_body(rivulet_world* world, const rivulet_body* body, uint32_t* id, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (body == nullptr || id == nullptr) return badInput("body or id is NULL");
+        world->bodies.forget();
+        const Result<uint32_t> added = world->bodies.add(*world->world, *body);
+        if (!added) return added.error();
+        *id = *added;
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_remove_body(rivulet_world* world, uint32_t id, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        world->bodies.forget();
+        return world->bodies.remove(*world->world, id);
+    });
+}
+
+rivulet_status rivulet_world_body(const rivulet_world* world, uint32_t id, int32_t* inside, rivulet_body_state* state,
+                                  rivulet_body_load* load, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        const Result<std::optional<size_t>> place = world->bodies.placeOf(id);
+        if (!place) return place.error();
+        if (inside != nullptr) *inside = *place ? 1 : 0;
+        if (!*place) return ok();
+        if (state != nullptr) *state = world->bodies.stateOf(**place, world->world->bodies()[**place]);
+        if (load != nullptr) {
+            const BodyLoad& l = world->world->bodyLoads()[**place];
+            *load = {{l.force.x, l.force.y, l.force.z}, {l.torque.x, l.torque.y, l.torque.z}};
+        }
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_body_ids(const rivulet_world* world, uint32_t* ids, size_t capacity, size_t* count, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        if (count == nullptr) return badInput("count is NULL");
+        const std::vector<uint32_t>& all = world->bodies.ids();
+        if (ids != nullptr) std::copy_n(all.begin(), std::min(capacity, all.size()), ids);
+        *count = all.size();
+        return ok();
+    });
+}

@@ -1,0 +1,262 @@
+/* Bodies that come and go while a world runs. */
+#define _POSIX_C_SOURCE 200809L
+#include <math.h>
+#include <time.h>
+
+#include "check.h"
+
+static rivulet_error why;
+
+enum { MOST = 20000 };
+static float positions[3 * MOST];
+
+/* A box of 12 triangles about a centre that is not the origin of its frame. */
+static const float kCentre[3] = {0.02F, -0.01F, 0.03F};
+static float corners[24];
+static const uint32_t kTriangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+static rivulet_mesh box_of(float width, float height) {
+    for (int k = 0; k < 8; ++k)
+        for (int axis = 0; axis < 3; ++axis)
+            corners[3 * k + axis] = kCentre[axis] + ((k >> axis & 1) != 0 ? 0.5F : -0.5F) * (axis == 1 ? height : width);
+    return (rivulet_mesh){.size = sizeof(rivulet_mesh), .positions = corners, .vertices = 8, .indices = kTriangles, .indices_count = 36};
+}
+static rivulet_body crate_of(const rivulet_mesh* mesh, float x, float y, float z) {
+    return (rivulet_body){.size = sizeof(rivulet_body), .mesh = mesh, .density = 500, .pose = {{x, y, z}, {0, 0, 0, 0}}};
+}
+
+static rivulet_world* pool(rivulet_context* context, const char* more, const rivulet_body_host* host) {
+    char json[512];
+    snprintf(json, sizeof json,
+             "{\"fluid\": {\"method\": \"pbf\", \"spacing\": 0.025, \"box\": {\"max\": [0.5, 0.8, 0.5]}, \"bodies\": {\"maxSamples\": 1500}%s, "
+             "\"blocks\": "
+             "[{\"max\": [0.5, 0.2, 0.5]}]}}",
+             more);
+    rivulet_world* world = NULL;
+    const rivulet_world_options o = {.size = sizeof o, .json = json, .body_host = host};
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    return world;
+}
+static void run(rivulet_world* world, int frames) {
+    for (int k = 0; k < frames; ++k) DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+}
+static size_t count_of(rivulet_world* world) {
+    rivulet_particles all = {.size = sizeof all, .capacity = MOST, .positions = positions};
+    DONE(rivulet_world_particles(world, &all, &why));
+    return all.count;
+}
+static void wait_for(rivulet_world* world, uint32_t id) {
+    const struct timespec pause = {0, 1000000};
+    int32_t inside = 0;
+    for (;;) {
+        DONE(rivulet_world_body(world, id, &inside, NULL, NULL, &why));
+        if (inside) return;
+        nanosleep(&pause, NULL);
+        DONE(rivulet_world_step(world, NULL, 0, &why)); /* it arrives, and no time passes */
+    }
+}
+
+/* A crate, given as a mesh and a density, floats half under water. Its state is that of the mesh's frame, and its load its weight. */
+static void a_crate_floats(rivulet_context* context) {
+    rivulet_world* world = pool(context, "", NULL);
+    run(world, 2);
+    const rivulet_mesh mesh = box_of(0.25F, 0.15F);
+    rivulet_body crate = crate_of(&mesh, 0.25F - kCentre[0], 0.35F, 0.25F - kCentre[2]);
+    crate.velocity[1] = -0.5F;
+    uint32_t id = 9;
+    DONE(rivulet_world_add_body(world, &crate, &id, &why));
+    CHECK(id == 0);
+    int32_t inside = 9;
+    rivulet_body_state state = {0}, states[2];
+    rivulet_body_load load = {0};
+    wait_for(world, id);
+    DONE(rivulet_world_body(world, id, &inside, &state, NULL, &why));
+    CHECK(inside == 1 && fabsf(state.velocity[1] + 0.5F) < 1.0e-6F && fabsf(state.pose.position[1] - 0.35F) < 1.0e-6F);
+    CHECK(fabsf(state.pose.position[0] - crate.pose.position[0]) < 1.0e-5F && fabsf(state.pose.rotation[3]) > 0.9999F);
+    const size_t before = count_of(world);
+    run(world, 90);
+    double under = 0, lift = 0;
+    for (int k = 0; k < 60; ++k) {
+        run(world, 1);
+        DONE(rivulet_world_body(world, id, NULL, &state, &load, &why));
+        /* (keel + under) * area = water + under * base */
+        const double keel = state.pose.position[1] + kCentre[1] - 0.075, base = 0.25 * 0.25, area = 0.5 * 0.5;
+        under += ((double)before * 0.025 * 0.025 * 0.025 - area * keel) / (area - base) / 60;
+        lift += load.force[1] / 60;
+    }
+    const double weight = 500 * 9.81 * 0.25 * 0.25 * 0.15;
+    CHECK(fabs(under - 0.075) < 0.025); /* a spacing: it sways, and is 6 of them high */
+    CHECK(fabs(lift - weight) < 0.05 * weight);
+    CHECK(count_of(world) == before);
+    size_t count = 0;
+    uint32_t ids[2] = {9, 9};
+    DONE(rivulet_world_body_ids(world, ids, 2, &count, &why));
+    CHECK(count == 1 && ids[0] == 0);
+    DONE(rivulet_world_bodies(world, states, 1, &why));
+    CHECK(states[0].pose.position[1] == state.pose.position[1]);
+    DONE(rivulet_world_reset(world, &why));
+    DONE(rivulet_world_body(world, id, NULL, &state, NULL, &why));
+    CHECK(fabsf(state.pose.position[1] - 0.35F) < 1.0e-5F);
+    DONE(rivulet_world_remove_body(world, id, &why));
+    DONE(rivulet_world_body_ids(world, NULL, 0, &count, &why));
+    CHECK(count == 0);
+    REFUSED(rivulet_world_remove_body(world, id, &why), "no body 0");
+    rivulet_world_destroy(world);
+}
+
+/* Twenty one after another, some still being made ready when they are removed; ids do not repeat. */
+static void many_come_and_go(rivulet_context* context) {
+    rivulet_world* world = pool(context, ", \"sleep\": {\"on\": true}", NULL);
+    const rivulet_mesh mesh = box_of(0.05F, 0.05F);
+    uint32_t id = 0;
+    for (uint32_t k = 0; k < 20; ++k) {
+        const rivulet_body crate = crate_of(&mesh, 0.08F + 0.08F * (float)(k % 5), 0.4F, 0.08F + 0.1F * (float)(k / 5 % 4));
+        DONE(rivulet_world_add_body(world, &crate, &id, &why));
+        CHECK(id == k);
+        run(world, 1);
+        if (k % 4 == 3) DONE(rivulet_world_remove_body(world, k, &why));
+    }
+    for (uint32_t k = 0; k < 20; ++k)
+        if (k % 4 != 3) wait_for(world, k);
+    size_t count = 0;
+    DONE(rivulet_world_body_ids(world, NULL, 0, &count, &why));
+    CHECK(count == 15);
+    run(world, 20);
+    rivulet_stats stats = {.size = sizeof stats};
+    DONE(rivulet_world_stats(world, &stats, &why));
+    CHECK(stats.lost == 0 && stats.maximum_speed < 10);
+    rivulet_world_destroy(world);
+}
+
+/* The water makes room for what appears in it; what the water does not meet falls through it. */
+static void water_makes_room(rivulet_context* context) {
+    rivulet_world* world = pool(context, ", \"collision\": {\"meets\": 1}", NULL);
+    run(world, 10);
+    const size_t before = count_of(world);
+    const rivulet_mesh mesh = box_of(0.2F, 0.1F);
+    rivulet_body crate = crate_of(&mesh, 0.25F, 0.1F, 0.25F);
+    uint32_t id = 0, ghost = 0;
+    crate.layers = 2;
+    DONE(rivulet_world_add_body(world, &crate, &ghost, &why));
+    wait_for(world, ghost);
+    run(world, 1);
+    CHECK(count_of(world) == before);
+    rivulet_body_load load = {{1, 1, 1}, {1, 1, 1}};
+    rivulet_body_state state = {0};
+    DONE(rivulet_world_body(world, ghost, NULL, &state, &load, &why));
+    CHECK(load.force[1] == 0 && state.velocity[1] < -0.1F);
+    crate.layers = 0;
+    DONE(rivulet_world_add_body(world, &crate, &id, &why));
+    wait_for(world, id);
+    const double gone = (double)(before - count_of(world)) * 0.025 * 0.025 * 0.025, volume = 0.2 * 0.2 * 0.1;
+    CHECK(fabs(gone - volume) < 0.25 * volume);
+    rivulet_world_destroy(world);
+}
+
+struct engine {
+    rivulet_world* world;
+    uint32_t added, removed;
+    size_t most;
+    int refused;
+    float y;
+};
+static void on_advance(void* user, const rivulet_body_load* loads, const float* gravity, double seconds, rivulet_body_state* states,
+                       size_t count) {
+    struct engine* e = user;
+    (void)loads;
+    (void)gravity;
+    (void)seconds;
+    if (count > e->most) e->most = count;
+    for (size_t k = 0; k < count; ++k) states[k].pose.position[1] = 0.5F;
+    e->refused += rivulet_world_remove_body(e->world, 0, NULL) == RIVULET_BAD_INPUT;
+}
+static void on_reset(void* user, const rivulet_body_state* states, size_t count) {
+    (void)user;
+    (void)states;
+    (void)count;
+}
+static void on_added(void* user, uint32_t id, const rivulet_body_state* state) {
+    struct engine* e = user;
+    e->added += 1 + id;
+    e->y = state->pose.position[1];
+}
+static void on_removed(void* user, uint32_t id) { ((struct engine*)user)->removed += 1 + id; }
+
+/* The host's engine is told of a body when it is in the world, and moves it in the frame of its mesh. */
+static void the_host_moves_them(rivulet_context* context) {
+    struct engine engine = {0};
+    const rivulet_body_host host = {
+        .size = sizeof host, .user = &engine, .advance = on_advance, .reset = on_reset, .added = on_added, .removed = on_removed};
+    rivulet_world* world = pool(context, "", &host);
+    engine.world = world;
+    const rivulet_mesh mesh = box_of(0.1F, 0.1F);
+    const rivulet_body crate = crate_of(&mesh, 0.25F, 0.4F, 0.25F);
+    uint32_t id = 0;
+    DONE(rivulet_world_add_body(world, &crate, &id, &why));
+    wait_for(world, id);
+    run(world, 1);
+    CHECK(engine.added == 1 && engine.most == 1 && engine.refused > 0 && fabsf(engine.y - 0.4F) < 1.0e-5F);
+    rivulet_body_state state;
+    DONE(rivulet_world_body(world, id, NULL, &state, NULL, &why));
+    CHECK(fabsf(state.pose.position[1] - 0.5F) < 1.0e-5F);
+    DONE(rivulet_world_remove_body(world, id, &why));
+    CHECK(engine.removed == 1);
+    rivulet_world_destroy(world);
+}
+
+static void what_cannot_be_is_refused(rivulet_context* context) {
+    rivulet_world* world = pool(context, "", NULL);
+    rivulet_mesh mesh = box_of(0.1F, 0.1F);
+    const rivulet_body good = crate_of(&mesh, 0.25F, 0.4F, 0.25F);
+    rivulet_body wrong = good;
+    uint32_t id = 0;
+    size_t count = 0;
+    REFUSED(rivulet_world_add_body(NULL, &good, &id, &why), "NULL");
+    REFUSED(rivulet_world_add_body(world, NULL, &id, &why), "NULL");
+    REFUSED(rivulet_world_add_body(world, &good, NULL, &why), "NULL");
+    REFUSED(rivulet_world_body(world, 0, NULL, NULL, NULL, &why), "no body 0");
+    REFUSED(rivulet_world_body_ids(world, NULL, 0, NULL, &why), "NULL");
+    wrong.density = 0;
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "density");
+    wrong = good;
+    wrong.mesh = NULL;
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "no samples");
+    wrong = good;
+    wrong.pose.position[0] = 2;
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "fluid.box");
+    wrong = good;
+    wrong.layers = 0x10000;
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "16 layers");
+    const float sample[3] = {0, 0, 0};
+    wrong = (rivulet_body){.size = sizeof wrong, .samples = sample, .samples_count = 1, .mass = 1, .pose = good.pose};
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "inertia");
+    /* A mesh that is open is found out while it is made ready. */
+    mesh.indices_count = 3;
+    DONE(rivulet_world_add_body(world, &good, &id, &why));
+    const struct timespec pause = {0, 1000000};
+    rivulet_status status = RIVULET_OK;
+    int32_t inside = 0;
+    for (int k = 0; k < 5000 && status == RIVULET_OK; ++k) {
+        nanosleep(&pause, NULL);
+        DONE(rivulet_world_step(world, NULL, 0, &why));
+        status = rivulet_world_body(world, id, &inside, NULL, NULL, &why);
+    }
+    CHECK(status == RIVULET_FAILED && strstr(why.message, "volume") != NULL);
+    DONE(rivulet_world_remove_body(world, id, &why));
+    DONE(rivulet_world_body_ids(world, NULL, 0, &count, &why));
+    CHECK(count == 0);
+    rivulet_world_destroy(world);
+}
+
+int main(void) {
+    rivulet_context* context = NULL;
+    const rivulet_context_options o = {.size = sizeof o, .backend = "cpu"};
+    DONE(rivulet_context_create(&o, &context, &why));
+    a_crate_floats(context);
+    many_come_and_go(context);
+    water_makes_room(context);
+    the_host_moves_them(context);
+    what_cannot_be_is_refused(context);
+    rivulet_context_destroy(context);
+    return failures > 0;
+}

@@ -26,17 +26,18 @@ STRUCT(FrameParams) {
     vec4 boxTowards[3];     // softboxes: unit direction, world; w = half width / distance
     vec4 boxSide[3];        // unit; w = half height / distance
     vec4 boxRadiance[3];    // w: matte light of radiance 1, 0: the box is only reflected
-    vec4 matteLight[9];  // of an environment map, see environment_map.h
+    vec4 matteLight[9];     // of an environment map, see environment_map.h
     // 1 if the meshes' map was drawn; 1 if the water's was, 2 if it holds light; metres a unit of the first map's depth, of the second's.
     vec4 shadow;
-    // With HOST_LIGHT, of a host's scene: x lights, y 1 if its shadow map is there, z the map's bias, w -1 if its depth is reversed, else 1.
+    // With HOST_LIGHT, of a host's scene: x lights, y 1 if its shadow map is there, z the map's bias, w -1 if its depth is reversed,
+    // else 1.
     vec4 host;
     vec4 hostLights[8];   // unit, world, towards each light; the first is lightDir
     vec4 hostColours[8];  // linear radiance
-    mat4 hostShadow;                // world -> coordinates and depth of the shadow map, as stored
-    vec4 fog;                       // x 0: none, 1 exponential, 2 its square, 3 linear; y density, 1/m; z, w where linear fog starts, ends, m
-    vec4 fogColour;                 // as it is mixed
-    vec4 fogWay;                    // x 1: distances are along the view axis; y 1: it is mixed in display values
+    mat4 hostShadow;      // world -> coordinates and depth of the shadow map, as stored
+    vec4 fog;             // x 0: none, 1 exponential, 2 its square, 3 linear; y density, 1/m; z, w where linear fog starts, ends, m
+    vec4 fogColour;       // as it is mixed
+    vec4 fogWay;          // x 1: distances are along the view axis; y 1: it is mixed in display values
 };
 #if defined(__cplusplus)
 static_assert(sizeof(FrameParams) % 16 == 0);

@@ -40,8 +40,8 @@ Status checkDry(std::span<const DryParams> volumes, std::span<const uint32_t> id
         if (!glm::all(glm::greaterThan(d.size, vec3(kLeast))))
             return badInput(fmt::format("dry[{}].size is ({}, {}, {}) m: give three lengths above 0", k, d.size.x, d.size.y, d.size.z));
         if (d.body >= 0 && std::ranges::find(ids, static_cast<uint32_t>(d.body)) == ids.end())
-            return badInput(fmt::format("dry[{}].body is {}, and no body has this id: use that of one of the {} bodies, or -1", k, d.body,
-                                        ids.size()));
+            return badInput(
+                fmt::format("dry[{}].body is {}, and no body has this id: use that of one of the {} bodies, or -1", k, d.body, ids.size()));
     }
     return ok();
 }

@@ -107,12 +107,12 @@ class FluidWorld {
     Status mayChangeWalls() const;  // the first of these
     Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
 
-    // Bodies that are added and removed while the world runs, within fluid.bodies.maxSamples; the others keep their states and loads. Those of
-    // Solids::bodies have the ids 0, 1, ..., others `id`, or one above all before. `body.state`: now, and after a reset. Particles inside
-    // it are removed as by setWalls; without BodyShape::distance, or without `removeInside`, its samples push them out, hard. A saved state
-    // can be restored where the same bodies are. Error (badInput): as create; no room; a sample in a wall; a BodyHost without `added`; no
-    // such id, or one twice; a probe measures the body or a dry volume moves with it; called within a step. (failed): out of memory; as lastStep(). Nothing has changed
-    // then.
+    // Bodies that are added and removed while the world runs, within fluid.bodies.maxSamples; the others keep their states and loads. Those
+    // of Solids::bodies have the ids 0, 1, ..., others `id`, or one above all before. `body.state`: now, and after a reset. Particles
+    // inside it are removed as by setWalls; without BodyShape::distance, or without `removeInside`, its samples push them out, hard. A
+    // saved state can be restored where the same bodies are. Error (badInput): as create; no room; a sample in a wall; a BodyHost without
+    // `added`; no such id, or one twice; a probe measures the body or a dry volume moves with it; called within a step. (failed): out of
+    // memory; as lastStep(). Nothing has changed then.
     Result<uint32_t> addBody(const Body& body, bool removeInside = true, std::optional<uint32_t> id = {});
     Status removeBody(uint32_t id);
     const std::vector<uint32_t>& bodyIds() const;  // of bodies() and bodyLoads(), in the order in which they were added

@@ -121,7 +121,7 @@ struct FluidWorld::Impl {
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
     Status replaceSources(const Sources& next);
-    void setDry(const std::vector<DryParams>& volumes);  // sound ones
+    void setDry(const std::vector<DryParams>& volumes);                                     // sound ones
     Status removeInside(const std::function<bool(const vec3&)>& inside, const char* what);  // particles
     Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;

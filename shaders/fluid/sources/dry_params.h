@@ -1,8 +1,8 @@
 // The parameters of the pass that keeps volumes dry. Layout shared by C++, GLSL (std140, std430) and OpenCL: size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/fluid/world/step_params.h"
 #include "shaders/common/lang.h"
+#include "shaders/fluid/world/step_params.h"
 namespace rivulet {
 #endif
 STRUCT(DryParamsBlock) {

@@ -170,11 +170,6 @@ typedef struct rivulet_particles {
 } rivulet_particles;
 RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why);
 
-/* Sets fluid.attributes[attribute] of the particles with these ids: `values` are 4 floats each, finite. The water does not depend on it; a
-   reset gives them their values of t = 0 again. Does not wait. rivulet_world_paint, in rivulet_query.h, does it in a volume. */
-RIVULET_API rivulet_status rivulet_world_set_attribute(rivulet_world* world, uint32_t attribute, const uint32_t* ids, const float* values,
-                                                       size_t count, rivulet_error* why);
-
 /* The states of the bodies now, in the order of rivulet_world_body_ids; `count` must be their number. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
 /* Bodies that come and go while the world runs, within the memory of fluid.bodies.maxSamples. Ids are as those of walls; those of

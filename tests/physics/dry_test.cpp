@@ -162,6 +162,35 @@ TEST(Dry, AVolumeMovesThroughTheWater) {
     }
 }
 
+// A volume in a body that was added stays with it, whichever other body goes.
+TEST(Dry, AVolumeFollowsItsBodyWhileOthersComeAndGo) {
+    FluidParams p;
+    p.spacing = 0.05F;
+    p.gravity = vec3(0.0F);
+    p.bodies.maxSamples = 1000;
+    const auto device = cpu();
+    auto made = FluidWorld::create(*device, p, {}, {});
+    ASSERT_TRUE(made) << made.error().message;
+    FluidWorld& world = **made;
+    const auto box = [&](const vec3& at, const vec3& velocity) {
+        return Body{.shape = boxShape(vec3(0.2F), 500, p.spacing), .state = {.pose = {.position = at}, .velocity = velocity}};
+    };
+    const Result<uint32_t> still = world.addBody(box(vec3(0.2F, 0.5F, 0.2F), vec3(0.0F)));
+    const Result<uint32_t> moves = world.addBody(box(vec3(0.4F, 0.5F, 0.6F), vec3(0.6F, 0.0F, 0.0F)));
+    ASSERT_TRUE(still && moves);
+    const vec3 above(0.4F, 0.6F, 0.6F);
+    ASSERT_TRUE(world.setSources({.dry = {{.position = above, .size = vec3(0.1F), .body = static_cast<int>(*moves)}}}));
+    const Status held = world.removeBody(*moves);
+    ASSERT_FALSE(held);
+    EXPECT_EQ(held.error().message, "dry[0] moves with body 1: remove the dry volume first");
+    ASSERT_TRUE(world.removeBody(*still));
+    for (int frame = 0; frame < 15; ++frame) world.step({}, 1.0 / 60);
+    EXPECT_NEAR(world.dry()[0].centre.x, above.x + 0.6F * 0.25F, 1.0e-3F);
+    EXPECT_NEAR(world.dry()[0].centre.y, above.y, 1.0e-3F);
+    ASSERT_TRUE(world.setSources({}));
+    EXPECT_TRUE(world.removeBody(*moves));
+}
+
 TEST(Dry, IsRefusedInASentence) {
     const auto device = cpu();
     const auto said = [&](const DryParams& dry, size_t count = 1) {
@@ -175,7 +204,7 @@ TEST(Dry, IsRefusedInASentence) {
     EXPECT_NE(said({.size = vec3(0.1F, -1, 0.1F)}).find("dry[0].size"), std::string::npos);
     EXPECT_NE(said({.shape = "cone", .size = vec3(0.1F)}).find("box"), std::string::npos);
     EXPECT_NE(said({.position = vec3(NAN), .size = vec3(0.1F)}).find("dry[0].position"), std::string::npos);
-    EXPECT_EQ(said({.size = vec3(0.1F), .body = 0}), "dry[0].body is 0, and there are 0 bodies: use the index of one, or -1");
+    EXPECT_EQ(said({.size = vec3(0.1F), .body = 0}), "dry[0].body is 0, and no body has this id: use that of one of the 0 bodies, or -1");
     EXPECT_EQ(said({.size = vec3(0.1F)}, 17), "17 volumes stay dry, and 16 are possible: join some");
 }
 

@@ -91,19 +91,17 @@ class FluidWorld {
     // with fluid.grid linked_list, or in a world that exchanges water, another number; an emitter with a liquid of its own, in a world that
     // began with one liquid.
     Status setSources(const Sources& sources);
-
     const std::vector<DryVolume>& dry() const;  // Sources::dry, where the last step left them
 
     // Walls that are added, moved at once and removed while the world runs: planes, fields, moving solids and surfaces of `solids` in place
     // of those there are; bodies stay, those of `solids` are not read. `poses`: of solids.rigid now; empty: their own, which are those at
     // t = 0. A field that is in the world already is not read again, and a deforming solid keeps its shape; those that are no longer named
     // may be destroyed when this returns. Nothing else of the world changes: without walls that differ, its steps are the same bit for bit.
-    // A wall that is added does not move the water aside. Particles inside it, or behind a plane, are removed if `removeInside`, and their
-    // number is added to FluidStats::drained; where memory for that is short they stay, and the log says so. Else they stay, and collisions
-    // push them out through its nearest side or keep them where they are. With fluid.wetness walls that stay keep their values, and those
-    // that are added are dry. reset() leaves out particles of t = 0 that would be inside a wall. Error (badInput): the box is periodic
-    // along all axes and the world was created without walls, so that its kernels have no code for them; as create. (failed): out of
-    // memory. Nothing has changed then.
+    // A wall that is added does not move the water aside. Particles inside it, or behind a plane, are removed if `removeInside`, and
+    // FluidStats::drained counts them; where memory for that is short they stay, and the log says so. Else they stay, and collisions push
+    // them out through its nearest side or keep them where they are. With fluid.wetness walls that stay keep their values; added ones are
+    // dry. reset() leaves out particles of t = 0 that would be inside. Error (badInput): the box is periodic along all axes and the world
+    // was created without walls, so that its kernels have no code for them; as create. (failed): out of memory. Nothing has changed then.
     Status mayChangeWalls() const;  // the first of these
     Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
 
@@ -117,9 +115,8 @@ class FluidWorld {
     Status removeBody(uint32_t id);
     const std::vector<uint32_t>& bodyIds() const;  // of bodies() and bodyLoads(), in the order in which they were added
 
-    // Sets fluid.attributes[attribute] of particles: of those with these ids (ParticleView::id), a value each; or of all that are in a
-    // volume now, whose id is not read. Neither waits. Error (badInput): no such attribute or id; a value or volume that is not finite;
-    // (failed): out of memory. Nothing has changed then.
+    // Sets fluid.attributes[attribute] of particles: of those with these ids (ParticleView::id), a value each; or of all in a volume now,
+    // whose id is not read. Neither waits. Error (badInput): no such attribute or id; values that are not finite; (failed): out of memory.
     Status setAttribute(size_t attribute, std::span<const uint32_t> ids, std::span<const vec4> values);
     Status paint(size_t attribute, const Volume& inside, const vec4& value);
 

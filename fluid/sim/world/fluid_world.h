@@ -39,8 +39,7 @@ using StartProgress = std::function<bool(double share)>;
 class FluidWorld {
   public:
     // Error (badInput): a value out of its range (docs/parameters.md) or in conflict with another; (failed): out of memory, interrupted
-    // (Device::stopOn), or `progress` cancelled it.
-    // `device` must outlive the world, `forces` are the host's.
+    // (Device::stopOn), or `progress` cancelled it. `device` must outlive the world, `forces` are the host's.
     static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                       Sources sources = {}, std::span<const HostForce> forces = {},
                                                       const StartProgress& progress = {});

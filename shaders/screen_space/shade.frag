@@ -129,8 +129,8 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     float ownDepth = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r);
     // Far behind what is seen there, the ray has not met it but passed behind it.
     float met = 1.0 - smoothstep(0.5 * radius, 0.5 * radius + 0.1 * high, -p.z - ownDepth);
-    // Its fog is that of the way from the surface.
-    float passes = fogPasses(uv * frame.viewport.xy, ownDepth) / max(fogPasses(high), 1.0e-6);
+    // Its fog is that of the way from the surface. No rounding of the picture grows: the surface's own fog lets no more pass than this takes out.
+    float passes = max(fogPasses(uv * frame.viewport.xy, ownDepth) / max(fogPasses(high), 1.0e-6), fogPasses(pixelOf(from), -from.z));
     return vec4(unfogged(textureLod(sceneColour, uv, 0.0).rgb, passes), edge.x * edge.y * met);
 }
 

@@ -353,44 +353,53 @@ TEST_F(LightOfAHost, EndsInFogFarAway) {
     }
 }
 
-// Where water reflects the scene, what it shows of it is fogged for the way from the surface, and then for its own distance: with all fog
-// of one kind, a mirror shows the fog of the whole way.
+// Where water reflects the scene, what it shows of it is fogged for the way from the surface, and then for its own distance: with
+// exponential fog, a mirror shows the fog of the whole way. Where the picture's fog has hidden more than that, it cannot be found again.
 TEST_F(LightOfAHost, ReflectsTheSceneInItsFog) {
-    const Fog fog{"mirror", {.kind = HostFog::exponential, .colour = kFogColour, .density = 0.3F}};
-    // A bright wall behind the pool, seen in it.
-    const auto scene = [&](bool fogs) {
-        return [fog, fogs](const vec3& eye, const vec3& dir, float& length) {
-            const float wall = dir.z < 0 ? (-2.2F - eye.z) / dir.z : INFINITY;
-            length = eye.y + wall * dir.y < 3.0F ? wall : INFINITY;
-            const float passes = fogs && std::isfinite(length) ? fog.passes(length) : 1.0F;
-            return std::isfinite(length) ? fog.mixed(vec3(2.0F, 0.5F, 0.1F), passes) : fogs ? kFogColour : vec3(0.0F);
-        };
-    };
+    const Fog fogs[] = {{"exponential", {.kind = HostFog::exponential, .colour = kFogColour, .density = 0.3F}},
+                        {"squared", {.kind = HostFog::exponentialSquared, .colour = kFogColour, .density = 0.3F}},
+                        {"linear", {.kind = HostFog::linear, .colour = kFogColour, .start = 0.5F, .end = 6.0F}},
+                        {"hidden", {.kind = HostFog::linear, .colour = kFogColour, .start = 0.5F, .end = 4.0F}}};
+    const vec3 paint(2.0F, 0.5F, 0.1F);
     FluidLook ink = clear();
     ink.absorption = vec3(1.0e4F);
     FrameView view = camera();
     view.cameraPosWorld = vec3(0.0F, 0.5F, 2.4F);
     view.view = glm::lookAt(view.cameraPosWorld, vec3(0.0F, 0.1F, -1.0F), vec3(0, 1, 0));
-    const std::vector<vec4> bare = draw("mirror_clear", view, {}, ink, scene(false)),
-                            fogged = draw("mirror_fog", view, {.fog = fog.fog}, ink, scene(true));
     const PoolPicture host(view, empty(vec3(0.0F)));
-    size_t seen = 0;
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-            float length = 0;
-            const vec3 d = host.ray(x, y);
-            const auto k = static_cast<size_t>(y * kWidth + x);
-            if (!meets(view.cameraPosWorld, d, length) || bare[k].x < 0.1F) continue;
-            const vec3 at = view.cameraPosWorld + length * d;
-            const float onwards = (-2.2F - at.z) / d.z, share = reflectance(-d.y, FluidLook().refractiveIndex);
-            // Of the wall's light; with fog on the way there, which is reflected too.
-            const float met = bare[k].x / (2.0F * share);
-            if (met < 0.97F || met > 1.03F) continue;
-            const vec3 reflected = share * fog.mixed(vec3(2.0F, 0.5F, 0.1F), fog.passes(onwards));
-            EXPECT_LT(glm::length(vec3(fogged[k]) - fog.mixed(reflected, fog.passes(length))), 0.02F) << x << " " << y;
-            ++seen;
-        }
-    EXPECT_GT(seen, 400U);
+    // A bright wall behind the pool, seen in it.
+    const auto scene = [&](const Fog* fog) {
+        return [fog, paint](const vec3& eye, const vec3& dir, float& length) {
+            const float wall = dir.z < 0 ? (-2.2F - eye.z) / dir.z : INFINITY;
+            length = eye.y + wall * dir.y < 3.0F ? wall : INFINITY;
+            if (!std::isfinite(length)) return fog != nullptr ? kFogColour : vec3(0.0F);
+            return fog != nullptr ? fog->mixed(paint, fog->passes(length)) : paint;
+        };
+    };
+    const std::vector<vec4> bare = draw("mirror_clear", view, {}, ink, scene(nullptr));
+    for (const Fog& fog : fogs) {
+        SCOPED_TRACE(fog.name);
+        const std::vector<vec4> fogged = draw(fmt::format("mirror_{}", fog.name).c_str(), view, {.fog = fog.fog}, ink, scene(&fog));
+        size_t seen = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                float length = 0;
+                const vec3 d = host.ray(x, y);
+                const auto k = static_cast<size_t>(y * kWidth + x);
+                if (!meets(view.cameraPosWorld, d, length)) continue;
+                const vec3 at = view.cameraPosWorld + length * d;
+                const float onwards = (-2.2F - at.z) / d.z, share = reflectance(-d.y, FluidLook().refractiveIndex);
+                // Where it mirrors the wall alone.
+                const float met = bare[k].x / (paint.x * share);
+                if (met < 0.97F || met > 1.03F) continue;
+                const float own = glm::distance(view.cameraPosWorld, at + onwards * vec3(d.x, -d.y, d.z));
+                const float passes = std::min(fog.passes(onwards), fog.passes(own) / fog.passes(length));
+                const vec3 expected = fog.mixed(share * fog.mixed(paint, passes), fog.passes(length));
+                EXPECT_LT(glm::length(vec3(fogged[k]) - expected), 0.02F) << x << " " << y;
+                ++seen;
+            }
+        EXPECT_GT(seen, 400U);
+    }
 }
 
 TEST_F(LightOfAHost, IsRefusedInASentence) {

@@ -11,6 +11,7 @@ tests = set()
 for source in (root / "tests").rglob("*_test.cpp"):
     tests.update(".".join(pair) for pair in re.findall(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", source.read_text(), re.M))
 tests.update(f"embed.{path.parent.name}" for path in (root / "tests/embed").glob("*/run.sh"))
+tests.update(f"embed.{path.stem}" for path in (root / "tests/embed/hosts").glob("*.png"))
 missing = []
 for page, least in (("SECURITY.md", 20), ("docs/embedding.md", 10)):
     text = (root / page).read_text()

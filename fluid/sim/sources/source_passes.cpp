@@ -10,8 +10,8 @@
 #include "engine/core/param_check.h"
 #include "engine/core/param_path.h"
 #include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/sources/attributes.h"
 #include "fluid/sim/sources/liquids.h"
-#include "fluid/sim/world/attributes.h"
 #include "fluid/sim/world/state_check.h"
 #include "fluid/voxel/packed_array.h"
 

@@ -11,8 +11,8 @@
 #include "engine/core/json.h"
 #include "engine/core/param_check.h"
 #include "engine/core/param_fixed.h"
+#include "fluid/sim/sources/attributes.h"
 #include "fluid/sim/sources/liquids.h"
-#include "fluid/sim/world/attributes.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 
 namespace rivulet {

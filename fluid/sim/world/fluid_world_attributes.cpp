@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "fluid/sim/world/attributes.h"
+#include "fluid/sim/sources/attributes.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 #include "shaders/fluid/world/attribute_write.h"
 

@@ -1,4 +1,4 @@
-#include "fluid/sim/world/attributes.h"
+#include "fluid/sim/sources/attributes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

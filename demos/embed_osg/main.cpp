@@ -59,7 +59,12 @@ class Water : public osg::Drawable {
         GLint framebuffer = 0;
         glGetIntegerv(0x8CA6, &framebuffer);  // GL_DRAW_FRAMEBUFFER_BINDING: OSG may draw into a texture
         const osg::Viewport& box = *state.getCurrentViewport();
-        const rivulet_view view{sizeof view, modelView.ptr(), projection.ptr(), float(nearPlane), float(farPlane), {}, {}, 1};
+        rivulet_view view{};
+        view.size = sizeof view;
+        view.view = modelView.ptr();
+        view.projection = projection.ptr();
+        view.near_plane = float(nearPlane);
+        view.far_plane = float(farPlane);
         const rivulet_target target{sizeof target,    uint32_t(framebuffer), int(box.x()),     int(box.y()),
                                     int(box.width()), int(box.height()),     RIVULET_AUTOMATIC};
         return rivulet_world_draw(world_, &view, &target, why);

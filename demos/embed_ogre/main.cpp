@@ -46,7 +46,12 @@ class Water : public Ogre::RenderTargetListener {
             for (int k = 0; k < 4; ++k) projection[1][k] = -projection[1][k];
         projection = projection.transpose();
         const Ogre::Matrix4 view = Ogre::Matrix4(camera.getViewMatrix(true)).transpose();
-        const rivulet_view seen{sizeof seen, view[0], projection[0], camera.getNearClipDistance(), camera.getFarClipDistance(), {}, {}, 1};
+        rivulet_view seen{};
+        seen.size = sizeof seen;
+        seen.view = view[0];
+        seen.projection = projection[0];
+        seen.near_plane = camera.getNearClipDistance();
+        seen.far_plane = camera.getFarClipDistance();
         int framebuffer = 0;
         reinterpret_cast<void (*)(unsigned, int*)>(find("glGetIntegerv"))(0x8CA6, &framebuffer);  // GL_DRAW_FRAMEBUFFER_BINDING
         const rivulet_target target{sizeof target,         uint32_t(framebuffer), 0, 0, box.getActualWidth(),

@@ -105,10 +105,8 @@ int main(int count, char** arguments) {
     Ogre::SceneNode& eye = *scene.getRootSceneNode()->createChildSceneNode(Ogre::Vector3(0.6F, 1.05F, 2.75F));
     eye.attachObject(&camera);
     eye.lookAt(Ogre::Vector3(0.6F, 0.154F, 0.6F), Ogre::Node::TS_WORLD);
-    camera.setNearClipDistance(0.1F);
-    camera.setFarClipDistance(15);
-    camera.setFOVy(Ogre::Degree(42.08F));
-    camera.setAspectRatio(4.0F / 3);
+    camera.setNearClipDistance(0.1F), camera.setFarClipDistance(15);
+    camera.setFOVy(Ogre::Degree(42.08F)), camera.setAspectRatio(4.0F / 3);
 
     // Three targets of the same camera: the window, a texture, and a texture that a compositor fills from one of its own.
     Water water;
@@ -123,8 +121,7 @@ int main(int count, char** arguments) {
     Ogre::CompositionTechnique& way = *Ogre::CompositorManager::getSingleton().create("copy", "General")->createTechnique();
     way.createTextureDefinition("drawn")->formatList.push_back(Ogre::PF_BYTE_RGBA);
     Ogre::CompositionTargetPass& drawn = *way.createTargetPass();
-    drawn.setOutputName("drawn");
-    drawn.setInputMode(Ogre::CompositionTargetPass::IM_PREVIOUS);
+    drawn.setOutputName("drawn"), drawn.setInputMode(Ogre::CompositionTargetPass::IM_PREVIOUS);
     Ogre::CompositionPass& quad = *way.getOutputTargetPass()->createPass(Ogre::CompositionPass::PT_RENDERQUAD);
     quad.setMaterialName("copy");
     quad.setInput(0, "drawn");

@@ -167,7 +167,7 @@ TEST(Dry, AVolumeFollowsItsBodyWhileOthersComeAndGo) {
     FluidParams p;
     p.spacing = 0.05F;
     p.gravity = vec3(0.0F);
-    p.bodies.maxSamples = 1000;
+    p.maxBodySamples = 1000;
     const auto device = cpu();
     auto made = FluidWorld::create(*device, p, {}, {});
     ASSERT_TRUE(made) << made.error().message;

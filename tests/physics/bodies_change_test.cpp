@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "fluid/sim/solids/body_shapes.h"
@@ -301,6 +302,63 @@ struct Engine {
     }
 };
 
+// A world without bodies and without memory for samples takes those that the water does not meet: they fall freely.
+TEST(BodiesChange, WhatTheWaterDoesNotMeetNeedsNoSamples) {
+    auto device = cpu();
+    FluidParams p = pool(0.1F);
+    p.maxBodySamples = 0;
+    auto world = makeWorld(*device, p), plain = makeWorld(*device, p);
+    Body ghost = boxAt(vec3(0.25F, 0.5F, 0.25F), vec3(0.1F), 500);
+    ghost.meetsWater = false;
+    const uint32_t first = add(*world, ghost);
+    add(*world, ghost);
+    run(*world, 10);
+    run(*plain, 10);
+    ASSERT_EQ(world->bodies().size(), 2U);
+    const double t = 10 * kFrame;
+    EXPECT_NEAR(double{world->bodies()[1].pose.position.y}, 0.5 - 0.5 * 9.81 * t * t, 0.02);
+    EXPECT_EQ(world->bodyLoads()[0].force, dvec3(0.0));
+    EXPECT_TRUE(waterOf(*world) == waterOf(*plain));
+    FluidParams probed = p;
+    probed.probes = {{.name = "all", .on = "box"}};
+    auto measured = makeWorld(*device, probed);
+    const uint32_t only = add(*measured, ghost);
+    probed.probes[0].on = "body";
+    ASSERT_TRUE(measured->setParams(probed));
+    run(*measured, 2);
+    EXPECT_EQ(measured->stats().loads.probes[0].force, dvec3(0.0));
+    expectRefused(measured->removeBody(only), "measures all bodies");
+    probed.probes[0].on = "box";  // the number of probes is fixed
+    ASSERT_TRUE(measured->setParams(probed));
+    ASSERT_TRUE(measured->removeBody(only));
+    ASSERT_TRUE(world->removeBody(first));
+    run(*world, 1);
+    world->reset();
+    EXPECT_EQ(world->bodies()[0].pose.position.y, 0.5F);
+}
+
+TEST(BodiesChange, NothingChangesWhileAStopIsAsked) {
+    auto device = cpu();
+    std::atomic<bool> stop = false;
+    device->stopOn(&stop);
+    auto world = makeWorld(*device, pool());
+    const Body body = boxAt(vec3(0.25F, 0.1F, 0.25F), vec3(0.15F), 500);
+    const size_t before = waterOf(*world).size();
+    stop = true;
+    expectRefused(world->addBody(body), "a stop is asked");
+    expectRefused(world->setWalls({}), "a stop is asked");
+    stop = false;
+    EXPECT_EQ(waterOf(*world).size(), before);
+    const uint32_t id = add(*world, body);
+    EXPECT_LT(waterOf(*world).size(), before);
+    stop = true;
+    expectRefused(world->removeBody(id), "a stop is asked");
+    stop = false;
+    EXPECT_EQ(world->bodyIds(), std::vector<uint32_t>{id});
+    run(*world, 1);
+    device->stopOn(nullptr);
+}
+
 TEST(BodiesChange, TheHostLearnsOfThem) {
     auto device = cpu();
     const Body body = boxAt(vec3(0.1F, 0.5F, 0.25F), vec3(0.1F), 500);
@@ -334,7 +392,7 @@ TEST(BodiesChange, ProbesFollowTheirBody) {
     run(*world, 40);
     const double lift = world->stats().loads.probes[0].force.y;
     EXPECT_NEAR(lift, 1000 * 9.81 * std::pow(0.15, 3), 0.3 * 1000 * 9.81 * std::pow(0.15, 3));
-    expectRefused(world->removeBody(1), "remove the probe first");
+    expectRefused(world->removeBody(1), "set fluid.probes[0].on to box, or .index to another body, first");
     ASSERT_TRUE(world->removeBody(0));
     run(*world, 5);
     EXPECT_NEAR(world->stats().loads.probes[0].force.y, lift, 0.1 * lift);

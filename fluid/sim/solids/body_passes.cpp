@@ -68,8 +68,6 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
                                         room, b.sampleCount_));
         b.sampleCount_ = room;
     }
-    if (bodies.empty() && b.sampleCount_ == 0) return b;
-    b.sampleCount_ = std::max(b.sampleCount_, 1U);  // what follows has room for them
     if ((host.advance == nullptr) != (host.reset == nullptr))
         return badInput("the host of the bodies has one of the functions advance and reset: give it both, or none");
     if ((host.added == nullptr) != (host.removed == nullptr))
@@ -79,6 +77,8 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         b.free_ = std::make_shared<FreeBodies>(bodies);
         b.host_ = b.free_->host();
     }
+    if (bodies.empty() && b.sampleCount_ == 0) return b;  // only bodies that the water does not meet can be added
+    b.sampleCount_ = std::max(b.sampleCount_, 1U);        // what follows has room for them
     b.friction_ = methodOf(params).doesViscosity;
     std::vector<Define> cubic, periodic, push;
     if (b.friction_ && params.kernel == "cubic_spline") cubic.push_back({"CUBIC", "1"});
@@ -152,6 +152,7 @@ Status BodyPasses::allocate(uint32_t slots) {
     }
     if (Status room = makeRoom(std::max<size_t>(bodies_.size(), 1)); !room) return room;
     ownRows_.resize(n);
+    matterRows_.resize(n);
     upload();
     return ok();
 }
@@ -160,6 +161,7 @@ Status BodyPasses::allocate(uint32_t slots) {
 void BodyPasses::upload() {
     std::ranges::fill(ownRows_, vec4(vec3(0.0F), kNoBody));
     uploaded_.assign(bodies_.size(), {});
+    if (sampleCount_ == 0) return;
     for (size_t k = 0; k < bodies_.size(); ++k) {
         DeviceBody& d = uploaded_[k];
         d.firstSample = first_[k];
@@ -169,6 +171,7 @@ void BodyPasses::upload() {
             ownRows_[s] = vec4(bodies_[k].shape.samples[s - d.firstSample], static_cast<float>(k));
     }
     device_->writeAll<vec4>(own_, ownRows_);
+    fillMatter(first_, matterRows_);
 }
 
 std::vector<uint32_t> BodyPasses::packed() const {
@@ -214,7 +217,7 @@ Status BodyPasses::add(const Body& body, uint32_t id, const FluidParams& params)
     BodyLoads filter = filter_;
     filter.add(body, params);
     std::vector<uint32_t> moved = fits ? first_ : packed();
-    if (Status room = makeRoom(bodies_.size() < room_ ? room_ : 2 * room_); !room) return room;
+    if (Status room = makeRoom(bodies_.size() < room_ ? room_ : std::max<size_t>(2 * room_, 1)); !room) return room;
     reserve(room_);
     moved.reserve(room_);
     host_.added(host_.self, id, body);
@@ -271,14 +274,19 @@ bool BodyPasses::maySpawn(const vec3& p, float spacing, float near) const {
 }
 
 std::vector<vec4> BodyPasses::matter(std::span<const uint32_t> first) const {
-    std::vector<vec4> rows(sampleCount_, vec4(0.0F, 0.0F, 0.0F, -1.0F));
+    std::vector<vec4> rows(sampleCount_);
+    fillMatter(first, rows);
+    return rows;
+}
+
+void BodyPasses::fillMatter(std::span<const uint32_t> first, std::span<vec4> rows) const {
+    std::ranges::fill(rows, vec4(0.0F, 0.0F, 0.0F, -1.0F));
     // Fluid beside the surface is half a spacing off it, the samples are half a spacing behind it: what a sample drags with is twice as
     // fast against the fluid as the surface is (Adami et al. 2012).
     constexpr float kMirrored = 2;
     for (size_t k = 0; k < bodies_.size(); ++k)
         for (size_t n = 0; n < volumes_[k].size(); ++n)
             rows[first[k] + n] = vec4(volumes_[k][n], 0.0F, kMirrored * bodies_[k].shape.sticks, -1.0F - static_cast<float>(k));
-    return rows;
 }
 
 bool BodyPasses::movedBy(size_t body, const Pose& from, float way) const {
@@ -318,14 +326,14 @@ void BodyPasses::place(const StepParams& step, Particles& particles) {
 }
 
 void BodyPasses::index(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
-    if (!any()) return;
+    if (!any() || sampleCount_ == 0) return;
     device_->run(index_, step, {&grid.cellStart(), &particles.id, &slotOf_, &wet_, &particles.acceleration}, sampleCount_);
     device_->run(wetSamples_, step, {&grid.neighbors(), &particles.position, &wet_}, grid.sampleThreads());
 }
 
 void BodyPasses::push(const StepParams& step, const NeighborGrid& grid, Particles& particles, const Buffer& position,
                       const Buffer& pressures, float scale, const vec3& weight) {
-    if (!any()) return;
+    if (!any() || sampleCount_ == 0) return;
     StepParams s = step;
     s.sampleScale = scale;
     s.force = vec4(weight, 0.0F);

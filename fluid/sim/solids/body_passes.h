@@ -46,7 +46,7 @@ class BodyPasses {
     // True if a particle may be spawned at `p`: outside every body, and not nearer than its rest distance.
     bool maySpawn(const vec3& p, float spacing, float near = 1) const;  // `near` as of SolidPasses
     // The entries of Particles::matterOf for the samples; those of no body have a volume of 0.
-    std::vector<vec4> matter() const { return matter(first_); }
+    const std::vector<vec4>& matter() const { return matterRows_; }
     std::vector<vec4> matter(std::span<const uint32_t> first) const;  // where a saved state has them
 
     const std::vector<BodyState>& states() const { return states_; }
@@ -96,10 +96,11 @@ class BodyPasses {
     uint64_t shapesHash() const;
     static uint32_t samplesOf(const Body& body);
     uint32_t samplesOf(size_t body) const { return samplesOf(bodies_[body]); }
-    bool anyMeets() const;                                                            // the water
-    std::vector<uint32_t> packed() const;                                             // first samples without gaps
-    Status makeRoom(size_t bodies);                                                   // on the device
-    void upload();                                                                    // of all bodies, where their samples are
+    bool anyMeets() const;                 // the water
+    std::vector<uint32_t> packed() const;  // first samples without gaps
+    Status makeRoom(size_t bodies);        // on the device
+    void upload();                         // of all bodies, where their samples are
+    void fillMatter(std::span<const uint32_t> first, std::span<vec4> rows) const;
     void append(Body body, uint32_t id, uint32_t first, std::vector<float> volumes);  // allocates nothing after reserve()
     void reserve(size_t bodies);
 
@@ -119,8 +120,8 @@ class BodyPasses {
     std::vector<uint32_t> first_;              // sample of each body
     std::vector<std::vector<float>> volumes_;  // of each body's samples, over spacing^3
     std::vector<DeviceBody> uploaded_;
-    std::vector<vec4> ownRows_;  // of own_
-    size_t room_ = 0;            // bodies that there is memory for
+    std::vector<vec4> ownRows_, matterRows_;  // of own_; matter()
+    size_t room_ = 0;                         // bodies that there is memory for
     Buffer own_, arm_, slotOf_, wet_, rows_, deviceBodies_;
     Kernel place_, index_, wetSamples_, push_, sumLoads_;
     bool friction_ = false;

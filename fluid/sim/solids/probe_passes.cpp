@@ -353,7 +353,7 @@ void ProbePasses::contact(const StepParams& step, ProbeOn on, uint32_t index, co
 }
 
 void ProbePasses::bodies(const StepParams& step) {
-    if (!wants(ProbeOn::body)) return;
+    if (!wants(ProbeOn::body) || world_.bodies.sampleCount() == 0) return;  // 0: the water meets none
     const BodyPasses::Samples s = world_.bodies.samples();
     device_->run(body_, step, {s.slotOf, &world_.particles.acceleration, &probes_, &rows_, s.own, s.arm, s.bodies}, PROBE_THREADS);
 }

@@ -100,7 +100,7 @@ class FluidWorld {
     // FluidStats::drained counts them; where memory for that is short they stay, and the log says so. Else they stay, and collisions push
     // them out through its nearest side or keep them where they are. With fluid.wetness walls that stay keep their values; added ones are
     // dry. reset() leaves out particles of t = 0 that would be inside. Error (badInput): the box is periodic along all axes and the world
-    // was created without walls, so that its kernels have no code for them; as create. (failed): out of memory. Nothing has changed then.
+    // began without walls, so that its kernels have none; as create. (failed): out of memory; a stop is asked. Nothing has changed then.
     Status mayChangeWalls() const;  // the first of these
     Status setWalls(const Solids& solids, std::span<const Pose> poses = {}, bool removeInside = true);
 
@@ -109,7 +109,7 @@ class FluidWorld {
     // inside it are removed as by setWalls; without BodyShape::distance, or without `removeInside`, its samples push them out, hard. A
     // saved state can be restored where the same bodies are. Error (badInput): as create; no room; a sample in a wall; a BodyHost without
     // `added`; no such id, or one twice; a probe measures the body or a dry volume moves with it; called within a step. (failed): out of
-    // memory; as lastStep(). Nothing has changed then.
+    // memory; a stop is asked (Device::stopOn); as lastStep(). Nothing has changed then.
     Result<uint32_t> addBody(const Body& body, bool removeInside = true, std::optional<uint32_t> id = {});
     Status removeBody(uint32_t id);
     const std::vector<uint32_t>& bodyIds() const;  // of bodies() and bodyLoads(), in the order in which they were added

@@ -18,7 +18,7 @@ Status FluidWorld::mayChangeWalls() const {
 
 Status FluidWorld::setWalls(const Solids& solids, std::span<const Pose> poses, bool removeInside) {
     Impl& w = *impl_;
-    if (Status whole = w.whole(); !whole) return whole;
+    if (Status can = w.mayChange(); !can) return can;
     if (Status may = mayChangeWalls(); !may) return may;
     ProbeTargets targets = ProbeTargets::of(solids);
     targets.bodies = w.probeTargets.bodies;
@@ -60,23 +60,53 @@ std::vector<WetSurface::Part> FluidWorld::Impl::wetParts(std::vector<WetSurface:
     return ofWalls;
 }
 
-Status FluidWorld::Impl::mayChangeBodies() const {
-    if (stepping) return badInput("a step is under way: add and remove bodies between steps");
+Status FluidWorld::Impl::mayChange() const {
+    if (device->stopAsked()) return failed("nothing was changed: a stop is asked, end it first");
     return whole();
 }
 
-// What depends on which bodies there are.
-void FluidWorld::Impl::bodiesChanged() {
-    change();
-    probeTargets.bodies = bodies.ids();
-    dry.bodiesChanged(bodies.ids(), bodies.starts());
-    const std::vector<vec4> matter = bodies.matter();
-    device->write(particles.matterOf, std::as_bytes(std::span(matter)), size_t{slots} * sizeof(vec4));
+Status FluidWorld::Impl::mayChangeBodies() const {
+    if (stepping) return badInput("a step is under way: add and remove bodies between steps");
+    return mayChange();
+}
+
+FluidWorld::Impl::BodyLists FluidWorld::Impl::bodyLists() const {
+    BodyLists lists{.forProbes = bodies.ids(), .forDry = bodies.ids(), .starts = bodies.starts()};
+    const size_t most = bodies.ids().size() + 1;
+    lists.forProbes.reserve(most);
+    lists.forDry.reserve(most);
+    lists.starts.reserve(most);
+    return lists;
+}
+
+template <class Work>
+bool FluidWorld::Impl::afterChange(const Work& work) {
+    try {
+        work();
+        return true;
+    } catch (const std::bad_alloc&) {
+        try {
+            log.warning("there is not enough memory for all that follows a change of walls or bodies: water inside may stay");
+        } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): nor for this
+        }
+        if (sleep) sleep->disturbAll(clock.time);
+        return false;
+    }
+}
+
+void FluidWorld::Impl::bodiesChanged(BodyLists lists) {
+    revision = std::move(lists.revision);
+    probeTargets.bodies = std::move(lists.forProbes);
+    dry.bodiesChanged(std::move(lists.forDry), std::move(lists.starts));
+    if (!bodies.matter().empty())
+        device->write(particles.matterOf, std::as_bytes(std::span(bodies.matter())), size_t{slots} * sizeof(vec4));
     invalidateCells();
-    StepParams s{};
-    s.count = particles.count;
-    grid->fill(s);
-    bodies.place(s, particles);
+    afterChange([this] {  // a substep begins with this, too
+        StepParams s{};
+        s.count = particles.count;
+        grid->fill(s);
+        bodies.place(s, particles);
+    });
 }
 
 Result<uint32_t> FluidWorld::addBody(const Body& body, bool removeInside, std::optional<uint32_t> id) {
@@ -96,17 +126,22 @@ Result<uint32_t> FluidWorld::addBody(const Body& body, bool removeInside, std::o
         if (!made) return made.error();
         wet.emplace(std::move(*made));
     }
+    Impl::BodyLists lists = w.bodyLists();
+    lists.forProbes.push_back(own);
+    lists.forDry.push_back(own);
+    lists.starts.push_back(body.state.pose);
     w.device->goOn();
     if (Status added = w.bodies.add(body, own, w.params); !added) return added.error();
     if (wet) w.wet = std::move(wet);
     w.solidsChanged = true;
-    w.bodiesChanged();
+    w.bodiesChanged(std::move(lists));
     const size_t last = w.bodies.states().size() - 1;
-    if (w.sleep && body.meetsWater) w.disturbAround(w.bodies.boundsOf(last));
-    if (removeInside && body.meetsWater && body.shape.distance) {
+    w.afterChange([&] {
+        if (w.sleep && body.meetsWater) w.disturbAround(w.bodies.boundsOf(last));
+        if (!removeInside || !body.meetsWater || !body.shape.distance) return;
         const auto inside = [&w, last](const vec3& p) { return w.bodies.inside(last, p, w.params.spacing); };
         if (Status removed = w.removeInside(inside, "body"); !removed) w.log.warning(removed.error().message);
-    }
+    });
     return own;
 }
 
@@ -124,8 +159,12 @@ Status FluidWorld::removeBody(uint32_t id) {
         const ProbeParams& p = w.params.probes[k];
         if (p.on != "body") continue;
         probed = true;
-        if (p.index == static_cast<int>(id) || ids.size() == 1)
-            return badInput(fmt::format("fluid.probes[{}] measures body {}: remove the probe first", k, id));
+        if (p.index == static_cast<int>(id))
+            return badInput(fmt::format(
+                "fluid.probes[{}] measures body {}: set fluid.probes[{}].on to box, or .index to another body, first", k, id, k));
+        if (ids.size() == 1)
+            return badInput(fmt::format(
+                "fluid.probes[{}] measures all bodies, and body {} is the last: set fluid.probes[{}].on to box first", k, id, k));
     }
     std::optional<WetPasses> wet;
     if (w.wet) {
@@ -136,21 +175,28 @@ Status FluidWorld::removeBody(uint32_t id) {
         if (!made) return made.error();
         wet.emplace(std::move(*made));
     }
+    Impl::BodyLists lists = w.bodyLists();
+    const auto offset = static_cast<std::ptrdiff_t>(at);
+    lists.forProbes.erase(lists.forProbes.begin() + offset);
+    lists.forDry.erase(lists.forDry.begin() + offset);
+    lists.starts.erase(lists.starts.begin() + offset);
     w.device->goOn();
     const Bounds place = w.bodies.boundsOf(at);
     if (Status gone = w.bodies.remove(at); !gone) return gone;
     if (wet) w.wet = std::move(wet);
-    w.bodiesChanged();
+    w.bodiesChanged(std::move(lists));
     if (w.sleep) {
-        w.disturbAround(place);
-        if (std::vector<Pose>& poses = w.sleep->bodyPoses(); at < poses.size())
-            poses.erase(poses.begin() + static_cast<std::ptrdiff_t>(at));
+        w.afterChange([&] { w.disturbAround(place); });
+        if (std::vector<Pose>& poses = w.sleep->bodyPoses(); at < poses.size()) poses.erase(poses.begin() + offset);
     }
-    if (probed)  // they name bodies by their places among the others
+    if (!probed) return ok();
+    const bool enough = w.afterChange([&] {  // they name bodies by their places among the others
         if (Status done = w.prepareProbes(w.params); !done) {
             w.probes.reset();
             w.report(done.error().message);
         }
+    });
+    if (!enough) w.probes.reset();
     return ok();
 }
 
@@ -166,17 +212,22 @@ Status FluidWorld::Impl::removeInside(const std::function<bool(const vec3&)>& wi
     } catch (const std::bad_alloc&) {
         return noMemory(fmt::format("there is not enough memory to find the particles inside a {}: they stay", what));
     }
+    const auto stopped = [what] {
+        return failed(fmt::format("a stop was asked while the particles inside a {} were removed: some stay", what));
+    };
+    if (device->interrupted()) return stopped();
     if (inside.empty()) return ok();
     Result<ExchangePasses> passes = ExchangePasses::create(*device);
     if (!passes) return passes.error();
     invalidateCells();
+    hasFree = true;
     for (std::span<const uint32_t> rest = inside; !rest.empty();) {
         const std::span<const uint32_t> some = rest.first(std::min(rest.size(), ExchangePasses::kMost));
         passes->take(step, *grid, particles, remembered, some, sorted);
+        if (device->interrupted()) return stopped();
+        before.drained += some.size();
         rest = rest.subspan(some.size());
     }
-    hasFree = true;
-    before.drained += inside.size();
     change();
     if (sleep) sleep->slotsChange();
     grid->sortAsleep();

@@ -141,8 +141,19 @@ struct FluidWorld::Impl {
     void findLiquids();
     void writeStart(const std::vector<bool>& leftOut = {});  // `leftOut`: of the particles of `start`
     std::vector<bool> insideAdded();
+    Status mayChange() const;  // walls and bodies. Error (failed): a stop is asked; as whole()
     Status mayChangeBodies() const;
-    void bodiesChanged();
+    // What else has lists of the bodies: made before these change, so that no memory is needed afterwards.
+    struct BodyLists {
+        std::vector<uint32_t> forProbes, forDry;  // ids
+        std::vector<Pose> starts;
+        std::shared_ptr<const void> revision = std::make_shared<const char>();
+    };
+    BodyLists bodyLists() const;
+    void bodiesChanged(BodyLists lists);
+    // After a change that stays. Memory that `work` lacks is no error of the change: the log says so. Returns whether there was enough.
+    template <class Work>
+    bool afterChange(const Work& work);
     std::vector<WetSurface::Part> wetParts(std::vector<WetSurface::Part> ofWalls) const;  // with the bodies
     void writeAttributes();
     void gatherForDrawing();

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/core/exception_error.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/callbacks.h"
 #include "fluid/capi/convert.h"
@@ -54,8 +55,15 @@ Result<Bodies::Read> Bodies::read(const rivulet_body& given, const std::string& 
     if (!sampled && b.mesh == nullptr)
         return badInput(
             fmt::format("{} has no samples: give points below its surface, about a spacing apart, or a mesh and a density", name));
-    if (!sampled && !(b.density > 0 && std::isfinite(b.density)))
-        return badInput(fmt::format("{}.density is {} kg/m^3: give more than 0, or samples and a mass", name, b.density));
+    constexpr float kLeastDensity = 0.01F, kMostDensity = 1.0e5F;  // kg/m^3, as of bodies in scene files
+    if (!sampled && !(b.density >= kLeastDensity && b.density <= kMostDensity))
+        return badInput(
+            fmt::format("{}.density is {} kg/m^3: give {} to {}, or samples and a mass", name, b.density, kLeastDensity, kMostDensity));
+    if (!sampled && (b.mass != 0 || b.volume != 0 || isSet(b.inertia)))
+        return badInput(
+            fmt::format("{} has a mesh without samples, whose mass, inertia and volume are found from its density: set them to 0, or give "
+                        "samples",
+                        name));
     if (sampled && b.density != 0) return badInput(fmt::format("{} has samples and a density: give one of them", name));
     Read read;
     BodyShape& shape = read.body.shape;
@@ -66,7 +74,14 @@ Result<Bodies::Read> Bodies::read(const rivulet_body& given, const std::string& 
     const Result<Pose> pose = soundPose(b.pose, name + ".pose");
     if (!pose) return pose.error();
     read.body.state = {*pose, vectorOf(b.velocity), vectorOf(b.spin)};
-    if (const std::string wrong = outside(name + ".pose.position", pose->position, box_); !wrong.empty()) return badInput(wrong);
+    if (!isWithin(read.body.state.velocity, kMostSpeed) || !isWithin(read.body.state.spin, kMostSpeed))
+        return badInput(fmt::format("{}: velocity or spin is not finite, or more than {}", name, kMostSpeed));
+    const auto checkPlace = [&](const char* what, const vec3& place) -> Status {
+        const std::string wrong = outside(name + what, pose->toWorld(place), box_);
+        return wrong.empty() ? ok() : Status(badInput(wrong));
+    };
+    if (sampled)
+        if (Status in = checkPlace(".pose.position", vec3(0.0F)); !in) return in.error();
     const Result<LayersParams> layers = layersOf(b.layers, b.meets, name);
     if (!layers) return layers.error();
     read.body.meetsWater = water_.meet(*layers);
@@ -79,6 +94,8 @@ Result<Bodies::Read> Bodies::read(const rivulet_body& given, const std::string& 
     if (sampled && !bakes) return read;
     Bounds bounds;
     for (const vec3& p : copy->positions) bounds.add(p);
+    if (!sampled)
+        if (Status in = checkPlace(": the centre of its mesh", 0.5F * (bounds.min + bounds.max)); !in) return in.error();
     const VoxelFieldOptions options = voxelOptions(bounds, mesh->resolution, spacing_, memoryLimit_);
     const MeshView view = copy->view();
     if (Status sound = checkVoxelField(std::span(&view, 1), options); !sound) return sound.error();
@@ -128,9 +145,9 @@ Status Bodies::begin(const rivulet_world_options& o, const FluidParams& fluid, c
         }
         to.bodies.push_back(std::move(body->body));
         frames_.push_back(frame);
-        inWorld_.push_back(next_++);
         at += given->size;
     }
+    next_ = static_cast<uint32_t>(o.bodies_count);
     const Result<rivulet_body_host> hosting = readStruct(o.body_host, "rivulet_body_host", "body_host");
     if (!hosting) return hosting.error();
     host_ = *hosting;
@@ -205,24 +222,13 @@ BodyHost Bodies::host() {
 }
 
 Status Bodies::enter(FluidWorld& world, uint32_t id, const Body& body, const Pose& frame) {
-    const size_t count = inWorld_.size();
-    inWorld_.reserve(count + 1);
+    frames_.resize(world.bodyIds().size());
     frames_.push_back(frame);  // `added` reads it
-    try {
-        if (const Result<uint32_t> added = world.addBody(body, true, id); !added) {
-            frames_.resize(count);
-            return added.error();
-        }
-    } catch (...) {
-        frames_.resize(count);
-        throw;
-    }
-    inWorld_.push_back(id);
-    return ok();
+    const Result<uint32_t> added = world.addBody(body, true, id);
+    return added ? ok() : Status(added.error());
 }
 
 Result<uint32_t> Bodies::add(FluidWorld& world, const rivulet_body& given) {
-    frames_.resize(inWorld_.size());  // a function of the host may have been left by longjmp
     Result<Read> body = read(given, "body", true);
     if (!body) return body.error();
     if (body->make == nullptr) {
@@ -236,39 +242,45 @@ Result<uint32_t> Bodies::add(FluidWorld& world, const rivulet_body& given) {
 }
 
 Status Bodies::remove(FluidWorld& world, uint32_t id) {
-    frames_.resize(inWorld_.size());
     if (const auto at = std::ranges::find(waiting_, id, &Waiting::id); at != waiting_.end()) {
         waiting_.erase(at);
         return ok();
     }
-    const auto place = std::ranges::find(inWorld_, id) - inWorld_.begin();
+    const std::vector<uint32_t>& ids = world.bodyIds();
+    const auto place = std::ranges::find(ids, id) - ids.begin();
     if (Status gone = world.removeBody(id); !gone) return gone;
-    inWorld_.erase(inWorld_.begin() + place);
     frames_.erase(frames_.begin() + place);
     return ok();
 }
 
 std::vector<std::string> Bodies::arrive(FluidWorld& world) {
-    frames_.resize(inWorld_.size());
     std::vector<std::string> wrong;
     for (Waiting& w : waiting_) {
         if (w.make == nullptr || !w.make->done()) continue;
-        Result<Made> made = w.make->take();
+        const auto arrives = [&]() -> Status {
+            try {
+                Result<Made> made = w.make->take();
+                if (!made) return made.error();
+                const Pose frame = made->frame;
+                finish(w.body, std::move(*made));
+                return enter(world, w.id, w.body, frame);
+            } catch (...) {  // what `added` of the host threw, or there is no memory
+                return errorOf(std::current_exception());
+            }
+        };
+        const Status in = arrives();
         w.make.reset();
-        const Pose frame = made ? made->frame : Pose{};
-        if (made) finish(w.body, std::move(*made));
-        if (const Status in = made ? enter(world, w.id, w.body, frame) : Status(made.error()); !in) {
-            w.failure = in.error().message;
-            wrong.push_back(fmt::format("body {}: {}", w.id, w.failure));
-        }
+        if (in) continue;
+        w.failure = in.error().message;
+        wrong.push_back(fmt::format("body {}: {}", w.id, w.failure));
     }
     std::erase_if(waiting_, [](const Waiting& w) { return w.make == nullptr && w.failure.empty(); });
     return wrong;
 }
 
-Result<std::optional<size_t>> Bodies::placeOf(uint32_t id) const {
-    if (const auto at = std::ranges::find(inWorld_, id); at != inWorld_.end())
-        return std::optional(static_cast<size_t>(at - inWorld_.begin()));
+Result<std::optional<size_t>> Bodies::placeOf(const FluidWorld& world, uint32_t id) const {
+    const std::vector<uint32_t>& ids = world.bodyIds();
+    if (const auto at = std::ranges::find(ids, id); at != ids.end()) return std::optional(static_cast<size_t>(at - ids.begin()));
     const auto waits = std::ranges::find(waiting_, id, &Waiting::id);
     if (waits == waiting_.end()) return badInput(fmt::format("there is no body {}", id));
     if (!waits->failure.empty()) return failed(fmt::format("body {}: {}", id, waits->failure));
@@ -311,7 +323,7 @@ rivulet_status rivulet_world_remove_body(rivulet_world* world, uint32_t id, rivu
 rivulet_status rivulet_world_body(const rivulet_world* world, uint32_t id, int32_t* inside, rivulet_body_state* state,
                                   rivulet_body_load* load, rivulet_error* why) {
     return with(world, why, Needs::memory, [&]() -> Status {
-        const Result<std::optional<size_t>> place = world->bodies.placeOf(id);
+        const Result<std::optional<size_t>> place = world->bodies.placeOf(*world->world, id);
         if (!place) return place.error();
         if (inside != nullptr) *inside = *place ? 1 : 0;
         if (!*place) return ok();
@@ -327,7 +339,7 @@ rivulet_status rivulet_world_body(const rivulet_world* world, uint32_t id, int32
 rivulet_status rivulet_world_body_ids(const rivulet_world* world, uint32_t* ids, size_t capacity, size_t* count, rivulet_error* why) {
     return with(world, why, Needs::memory, [&]() -> Status {
         if (count == nullptr) return badInput("count is NULL");
-        const std::vector<uint32_t>& all = world->bodies.ids();
+        const std::vector<uint32_t>& all = world->world->bodyIds();
         if (ids != nullptr) std::copy_n(all.begin(), std::min(capacity, all.size()), ids);
         *count = all.size();
         return ok();

@@ -35,9 +35,8 @@ class Bodies {
     // Brings bodies that are ready into the world. Returns sentences about those that could not be.
     std::vector<std::string> arrive(FluidWorld& world);
 
-    const std::vector<uint32_t>& ids() const { return inWorld_; }  // in the order of FluidWorld::bodies()
-    // Its place among these. Nothing: it is not in the world yet. Error (badInput): there is none; why it never will be.
-    Result<std::optional<size_t>> placeOf(uint32_t id) const;
+    // Its place among FluidWorld::bodyIds. Nothing: it is not in the world yet. Error (badInput): there is none; why it never will be.
+    Result<std::optional<size_t>> placeOf(const FluidWorld& world, uint32_t id) const;
     rivulet_body_state stateOf(size_t place, const BodyState& state) const;
 
     Status thrown();  // the error of what a function of the host threw in this call
@@ -78,8 +77,7 @@ class Bodies {
     std::vector<rivulet_body_load> loads_;
     std::vector<rivulet_body_state> states_;
     uint32_t next_ = 0;
-    std::vector<uint32_t> inWorld_;  // ids
-    std::vector<Pose> frames_;       // of those
+    std::vector<Pose> frames_;  // of FluidWorld::bodyIds; behind them that of one which is being added, or could not be
     std::vector<Waiting> waiting_;
 };
 

@@ -205,7 +205,8 @@ rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid
         if (wall && index >= walls.size()) return badInput(fmt::format("there is no wall {}: the world has {}", index, walls.size()));
         SolidRef ref = wall ? walls[index] : SolidRef{};
         if (!wall) {
-            const Result<std::optional<size_t>> place = world->bodies.placeOf(static_cast<uint32_t>(std::min<size_t>(index, UINT32_MAX)));
+            const Result<std::optional<size_t>> place =
+                world->bodies.placeOf(*world->world, static_cast<uint32_t>(std::min<size_t>(index, UINT32_MAX)));
             if (!place) return place.error();
             if (!*place) return badInput(fmt::format("body {} is not in the world yet", index));
             ref = {ProbeOn::body, static_cast<uint32_t>(**place)};

@@ -142,7 +142,8 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
             if (!pose) return pose.error();
             poses.push_back(*pose);
         }
-        if (world->world->lastStep()) {  // walls of an incomplete world do not change
+        // Walls of an incomplete world do not change, nor any while a stop is asked.
+        if (world->world->lastStep() && !world->context->device->stopAsked()) {
             for (const std::string& wrong : world->walls.arrive(*world->world)) world->context->log.error(wrong);
             for (const std::string& wrong : world->bodies.arrive(*world->world)) world->context->log.error(wrong);
         }

@@ -27,11 +27,12 @@ static rivulet_body crate_of(const rivulet_mesh* mesh, float x, float y, float z
 
 static rivulet_world* pool(rivulet_context* context, const char* more, const rivulet_body_host* host) {
     char json[512];
-    snprintf(json, sizeof json,
-             "{\"fluid\": {\"method\": \"pbf\", \"spacing\": 0.025, \"box\": {\"max\": [0.5, 0.8, 0.5]}, \"bodies\": {\"maxSamples\": 1500}%s, "
-             "\"blocks\": "
-             "[{\"max\": [0.5, 0.2, 0.5]}]}}",
-             more);
+    snprintf(
+        json, sizeof json,
+        "{\"fluid\": {\"method\": \"pbf\", \"spacing\": 0.025, \"box\": {\"max\": [0.5, 0.8, 0.5]}, \"bodies\": {\"maxSamples\": 1500}%s, "
+        "\"blocks\": "
+        "[{\"max\": [0.5, 0.2, 0.5]}]}}",
+        more);
     rivulet_world* world = NULL;
     const rivulet_world_options o = {.size = sizeof o, .json = json, .body_host = host};
     DONE(rivulet_world_create(context, &o, &world, &why));
@@ -153,6 +154,26 @@ static void water_makes_room(rivulet_context* context) {
     rivulet_world_destroy(world);
 }
 
+/* Without memory for samples. */
+static void no_water_meets_it(rivulet_context* context) {
+    rivulet_world* world = NULL;
+    const rivulet_world_options o = {
+        .size = sizeof o,
+        .json = "{\"fluid\": {\"spacing\": 0.05, \"box\": {\"max\": [0.5, 0.8, 0.5]}, \"blocks\": [{\"max\": [0.5, 0.2, 0.5]}]}}"};
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    const rivulet_mesh mesh = box_of(0.1F, 0.1F);
+    rivulet_body crate = crate_of(&mesh, 0.25F, 0.5F, 0.25F);
+    uint32_t id = 0;
+    crate.layers = crate.meets = 2;
+    DONE(rivulet_world_add_body(world, &crate, &id, &why));
+    wait_for(world, id);
+    run(world, 6);
+    rivulet_body_state state = {0};
+    DONE(rivulet_world_body(world, id, NULL, &state, NULL, &why));
+    CHECK(fabsf(state.velocity[1] + 0.981F) < 0.01F);
+    rivulet_world_destroy(world);
+}
+
 struct engine {
     rivulet_world* world;
     uint32_t added, removed;
@@ -216,8 +237,25 @@ static void what_cannot_be_is_refused(rivulet_context* context) {
     REFUSED(rivulet_world_add_body(world, &good, NULL, &why), "NULL");
     REFUSED(rivulet_world_body(world, 0, NULL, NULL, NULL, &why), "no body 0");
     REFUSED(rivulet_world_body_ids(world, NULL, 0, NULL, &why), "NULL");
+    wrong.density = 1.0e-30F;
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "density");
     wrong.density = 0;
     REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "density");
+    wrong = good;
+    wrong.mass = 7;
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "mass, inertia and volume are found from its density");
+    wrong = good;
+    wrong.spin[2] = NAN;
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "velocity or spin");
+    /* The body is where its mesh is, and not where the mesh's origin is. */
+    for (int k = 0; k < 8; ++k) corners[3 * k] += 1;
+    REFUSED(rivulet_world_add_body(world, &good, &id, &why), "the centre of its mesh");
+    wrong = good;
+    wrong.pose.position[0] -= 1;
+    DONE(rivulet_world_add_body(world, &wrong, &id, &why));
+    wait_for(world, id);
+    DONE(rivulet_world_remove_body(world, id, &why));
+    mesh = box_of(0.1F, 0.1F);
     wrong = good;
     wrong.mesh = NULL;
     REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "no samples");
@@ -255,6 +293,7 @@ int main(void) {
     a_crate_floats(context);
     many_come_and_go(context);
     water_makes_room(context);
+    no_water_meets_it(context);
     the_host_moves_them(context);
     what_cannot_be_is_refused(context);
     rivulet_context_destroy(context);

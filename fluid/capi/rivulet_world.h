@@ -68,7 +68,8 @@ typedef struct rivulet_body_host {
                     size_t count);
     void (*reset)(void* user, const rivulet_body_state* states,
                   size_t count); /* sets the bodies to these states: those of t = 0 after a reset */
-    /* A body is in the world from now on, and the last of the next states; or it is not any more. May be NULL. */
+    /* May be NULL. added: a body enters the world, and is the last of the next states. removed: it leaves the world, and the next states
+       are without it. */
     void (*added)(void* user, uint32_t id, const rivulet_body_state* state);
     void (*removed)(void* user, uint32_t id);
 } rivulet_body_host;
@@ -99,8 +100,8 @@ typedef struct rivulet_inputs {
     const rivulet_pose* poses; /* of the walls that move, in the order of their ids, at the end of the frame; NULL: as given before; after a
                                   reset those of t = 0, after a restore those that were saved */
     size_t poses_count;
-    /* Of the walls that deform, in the order of their ids: the positions of all vertices at the end of the frame, m, in the world's frame;
-       an entry that is NULL, or NULL itself: as before. Within the frame vertices move uniformly. */
+    /* Of the walls that deform, in the order of their ids, those too that are still being baked: the positions of all vertices at the end
+       of the frame, m, in the world's frame; an entry that is NULL, or NULL itself: as before. Between, vertices move uniformly. */
     const float* const* shapes;
     size_t shapes_count;
 } rivulet_inputs;
@@ -173,11 +174,11 @@ RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet
 /* The states of the bodies now, in the order of rivulet_world_body_ids; `count` must be their number. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
 /* Bodies that come and go while the world runs, within the memory of fluid.bodies.maxSamples. Ids are as those of walls; those of
-   rivulet_world_options have their index. A body with a mesh is made ready beside the frames, on one core: it is in the world from the step
-   on before which that ended, others at once. Water inside its mesh is then removed, and the log reports the number of particles. The other
-   bodies keep their states. After a reset it is where it was added; particles of t = 0 inside it are left out. A saved state can be
-   restored where the same bodies are. RIVULET_BAD_INPUT: no room; inside a wall; as rivulet_world_create; a probe measures the
-   removed one, or a dry volume moves with it. */
+   rivulet_world_options have their index. A body with a mesh is made ready beside the frames, on one core. It enters the world at the first
+   step after that; other bodies enter at once. Water inside its mesh is then removed, and the log reports the number of particles. The
+   other bodies keep their states. After a reset it is where it was added; particles of t = 0 inside it are left out. A saved state can be
+   restored where the same bodies are. RIVULET_BAD_INPUT: no room; inside a wall; as rivulet_world_create; a probe measures the removed one,
+   or a dry volume moves with it. */
 RIVULET_API rivulet_status rivulet_world_add_body(rivulet_world* world, const rivulet_body* body, uint32_t* id, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_world_remove_body(rivulet_world* world, uint32_t id, rivulet_error* why);
 /* `inside`: 1 if it is in the world; 0: not yet, and state and load are as they were. These may be NULL; the load is of the last substep.

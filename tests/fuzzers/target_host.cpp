@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <vector>
 
 #include "engine/core/message_line.h"
 #include "fluid/capi/rivulet.h"
@@ -35,7 +36,14 @@ void advance(void* /*user*/, const rivulet_body_load* /*loads*/, const float* /*
     std::fill_n(states, count, told);
 }
 void reset(void* /*user*/, const rivulet_body_state* /*states*/, size_t /*count*/) {}
-const rivulet_body_host kEngine{sizeof(rivulet_body_host), nullptr, advance, reset};
+// The ids of the engine's own bodies: none is added twice, none is removed that it does not have.
+std::vector<uint32_t> added{};
+void bodyAdded(void* /*user*/, uint32_t id, const rivulet_body_state* state) {
+    require(state != nullptr && std::find(added.begin(), added.end(), id) == added.end(), "a body is added once");
+    added.push_back(id);
+}
+void bodyRemoved(void* /*user*/, uint32_t id) { std::erase(added, id); }
+const rivulet_body_host kEngine{sizeof(rivulet_body_host), nullptr, advance, reset, bodyAdded, bodyRemoved};
 
 struct Host {
     rivulet_context* context = nullptr;
@@ -59,6 +67,7 @@ struct Host {
 void Host::makeWorld(Feed& feed) {
     rivulet_world_destroy(world);
     world = nullptr;
+    added.clear();
     rivulet_world_options options{};
     options.size = sizeof options;
     const std::string own = feed.text(80);

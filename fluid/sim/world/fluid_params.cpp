@@ -137,8 +137,8 @@ struct BodyRoom {
     int& maxSamples;
     void visit(ParamVisitor& v) {
         v.value({"maxSamples", "",
-                 "memory for samples of bodies, of those too that are added while the world runs: a body has about one for each square of "
-                 "0.9 spacings of its surface; 0 = those of the bodies at the start",
+                 "memory for samples of bodies, including bodies added while the world runs: a body has about 1.25 for each square spacing "
+                 "of its surface; 0 = those of the bodies at the start",
                  0, 16.0e6, kLog, kFixed},
                 maxSamples);
     }

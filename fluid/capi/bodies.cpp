@@ -20,6 +20,11 @@ namespace rivulet::capi {
 
 namespace {
 
+// What a function of the host threw, in a sentence, on its way through FluidWorld.
+struct HostThrew : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 constexpr const char* kStay = "; the bodies stay where they are";
 
 bool isOrigin(const Pose& frame) { return frame.position == vec3(0.0F) && frame.rotation == quat(1, 0, 0, 0); }
@@ -210,13 +215,13 @@ BodyHost Bodies::host() {
         if (b.host_.added == nullptr) return;
         const rivulet_body_state state = b.stateOf(b.frames_.size() - 1, body.state);
         b.callHost("added", [&] { b.host_.added(b.host_.user, id, &state); });
-        if (!b.thrown_.empty()) throw std::runtime_error(std::exchange(b.thrown_, {}));
+        if (!b.thrown_.empty()) throw HostThrew(std::exchange(b.thrown_, {}));
     };
     h.removed = [](void* self, uint32_t id, size_t) {
         Bodies& b = *static_cast<Bodies*>(self);
         if (b.host_.removed == nullptr) return;
         b.callHost("removed", [&] { b.host_.removed(b.host_.user, id); });
-        if (!b.thrown_.empty()) throw std::runtime_error(std::exchange(b.thrown_, {}));
+        if (!b.thrown_.empty()) throw HostThrew(std::exchange(b.thrown_, {}));
     };
     return h;
 }
@@ -224,8 +229,12 @@ BodyHost Bodies::host() {
 Status Bodies::enter(FluidWorld& world, uint32_t id, const Body& body, const Pose& frame) {
     frames_.resize(world.bodyIds().size());
     frames_.push_back(frame);  // `added` reads it
-    const Result<uint32_t> added = world.addBody(body, true, id);
-    return added ? ok() : Status(added.error());
+    try {
+        const Result<uint32_t> added = world.addBody(body, true, id);
+        return added ? ok() : Status(added.error());
+    } catch (const HostThrew& thrown) {
+        return failed(thrown.what());
+    }
 }
 
 Result<uint32_t> Bodies::add(FluidWorld& world, const rivulet_body& given) {
@@ -248,7 +257,11 @@ Status Bodies::remove(FluidWorld& world, uint32_t id) {
     }
     const std::vector<uint32_t>& ids = world.bodyIds();
     const auto place = std::ranges::find(ids, id) - ids.begin();
-    if (Status gone = world.removeBody(id); !gone) return gone;
+    try {
+        if (Status gone = world.removeBody(id); !gone) return gone;
+    } catch (const HostThrew& thrown) {
+        return failed(thrown.what());
+    }
     frames_.erase(frames_.begin() + place);
     return ok();
 }
@@ -264,7 +277,7 @@ std::vector<std::string> Bodies::arrive(FluidWorld& world) {
                 const Pose frame = made->frame;
                 finish(w.body, std::move(*made));
                 return enter(world, w.id, w.body, frame);
-            } catch (...) {  // what `added` of the host threw, or there is no memory
+            } catch (...) {  // there is no memory, for example
                 return errorOf(std::current_exception());
             }
         };

@@ -168,7 +168,7 @@ void rivulet_context_destroy(rivulet_context* context) {
 rivulet_status rivulet_context_lost(rivulet_context* context, rivulet_error* why) {
     return guarded(why, [&]() -> Status {
         if (context == nullptr) return badInput("context is NULL");
-        if ((context->busy || context->callback.frame != nullptr) && !context->callback.left())
+        if (isDrawnHere(*context) || ((context->busy || context->callback.frame != nullptr) && !context->callback.left()))
             return badInput("the context is in use: report its loss after the call");
         context->lost = true;
         context->current = nullptr;

@@ -9,6 +9,8 @@
 
 namespace rivulet {
 
+inline bool isRadiance(const vec3& c) { return isFinite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0; }
+
 // The surroundings that water reflects, and refracts where the picture ends: one of the two, linear radiance in the target's units.
 struct HostSurroundings {
     const HdrImage* image = nullptr;

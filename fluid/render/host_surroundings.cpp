@@ -44,7 +44,7 @@ Status upload(const HdrImage& image, Source& to) {
     std::vector<vec4> texels;
     texels.reserve(count);
     for (const vec3& t : image.texels) {
-        if (!isFinite(t) || t.x < 0 || t.y < 0 || t.z < 0)
+        if (!isRadiance(t))
             return badInput(fmt::format("texel {} of the surroundings is negative or not finite; give radiance", texels.size()));
         texels.emplace_back(t, 1.0F);
     }
@@ -118,7 +118,7 @@ void SurroundingsMap::draw(gpu::Program& program, const gpu::Texture& into, int 
 
 Status SurroundingsMap::take(const HostSurroundings& from, size_t mostBytes) {
     if ((from.image != nullptr) == (from.texture != 0)) return badInput("the surroundings need an image or a texture: give one of the two");
-    if (!turns(from.turn)) return badInput("HostSurroundings::turn is no rotation; its columns must be perpendicular and of length 1");
+    if (!turns(from.turn)) return badInput("surroundings: the turn is no rotation; its columns must be perpendicular and of length 1");
     Source source;
     if (Status found = from.image != nullptr ? upload(*from.image, source) : find(from.texture, source); !found) return found;
     int width = kNarrowest;

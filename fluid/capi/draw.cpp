@@ -165,16 +165,14 @@ rivulet_status rivulet_context_set_surroundings(rivulet_context* context, const 
         const Result<rivulet_surroundings> given = readStruct(surroundings, "rivulet_surroundings", "surroundings");
         if (!given) return given.error();
         HostSurroundings from{.texture = given->texture};
-        HdrImage image;
         if (given->pixels != nullptr) {
             constexpr int32_t kLargest = 1 << 15;  // texels
             if (given->width < 1 || given->height < 1 || given->width > kLargest || given->height > kLargest)
                 return badInput(
                     fmt::format("surroundings.pixels are {} x {}: give 1 to {} each way", given->width, given->height, kLargest));
-            image = {.name = "surroundings", .width = given->width, .height = given->height, .texels = {}};
-            image.texels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
-            std::memcpy(image.texels.data(), given->pixels, image.texels.size() * sizeof(vec3));
-            from.image = &image;
+            static_assert(sizeof(vec3) == 3 * sizeof(float));
+            const size_t count = static_cast<size_t>(given->width) * static_cast<size_t>(given->height);
+            from.image = {given->width, given->height, {reinterpret_cast<const vec3*>(given->pixels), count}};
         }
         if (given->turn != nullptr) std::memcpy(&from.turn[0][0], given->turn, sizeof from.turn);
         const CallScope scope(*context, Needs::drawing);

@@ -11,9 +11,19 @@ namespace rivulet {
 
 inline bool isRadiance(const vec3& c) { return isFinite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0; }
 
+// A view of an HdrImage, or of a host's own memory in the same layout, which stays the caller's.
+struct HdrImageView {
+    int width = 0, height = 0;
+    std::span<const vec3> texels = {};
+    HdrImageView() = default;
+    HdrImageView(int w, int h, std::span<const vec3> t) : width(w), height(h), texels(t) {}
+    HdrImageView(const HdrImage& image) : HdrImageView(image.width, image.height, image.texels) {}
+    bool given() const { return width != 0 || height != 0 || !texels.empty(); }
+};
+
 // The surroundings that water reflects, and refracts where the picture ends: one of the two, linear radiance in the target's units.
 struct HostSurroundings {
-    const HdrImage* image = nullptr;
+    HdrImageView image = {};
     // GL name of a GL_TEXTURE_2D, equirectangular as an HdrImage, or of a GL_TEXTURE_CUBE_MAP, in a format that is read as floats. Level 0
     // is read at the time of the call; call again when it has changed.
     unsigned texture = 0;

@@ -22,7 +22,7 @@ class LightOfAHost : public testing::PoolInAHost {
         PoolInAHost::SetUp();
         if (!renderer_) return;
         const HdrImage black{.name = "black", .width = 2, .height = 1, .texels = {vec3(0.0F), vec3(0.0F)}};
-        ASSERT_TRUE(renderer_->setSurroundings({.image = &black}));
+        ASSERT_TRUE(renderer_->setSurroundings({.image = black}));
     }
     void TearDown() override {
         for (gpu::Buffer* buffer : {&foam_[0], &foam_[1], &drops_, &pendants_}) *buffer = {};

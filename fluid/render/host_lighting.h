@@ -38,8 +38,8 @@ struct HostLight {
 
 // Where FrameView's light is shaded: the host's shadow map.
 struct HostShadow {
-    // GL name of a GL_TEXTURE_2D of depths, or of one red channel of floats; 0: no shadows. Its sampling is not used. Beyond the map all is
-    // lit. The layer of an array can be given as a texture view (glTextureView).
+    // GL name of a GL_TEXTURE_2D of depths, or of one red channel of floats, without a swizzle; 0: no shadows. Level 0 is read, and its
+    // sampling is not used. Beyond the map all is lit. The layer of an array can be given as a texture view (glTextureView).
     unsigned texture = 0;
     mat4 projection{1.0F};   // the world that FrameView::view transforms -> the map's clip space
     bool zeroToOne = false;  // the map was drawn with GL_ZERO_TO_ONE; else clip depths are -1 to 1
@@ -51,11 +51,12 @@ struct HostShadow {
 struct HostFog {
     // The share of light that passes a distance d: 1; exp(-density d); exp(-(density d)^2); (end - d) / (end - start), within 0 and 1.
     enum Kind { none, exponential, exponentialSquared, linear } kind = none;
-    vec3 colour{0.0F};         // linear radiance in the target's units; with `display`, display values (sRGB)
+    vec3 colour{0.0F};         // linear radiance in the target's units; with `display`, sRGB-encoded
     float density = 0;         // 1 / unit of length of the host
     float start = 0, end = 0;  // units of length of the host
-    bool alongView = false;    // d is the depth along the view axis; else the distance from the eye
-    bool display = false;      // the host mixes display values; else linear ones
+    // d is the depth along the view axis; else the distance from the eye: an orthographic camera has none, and distances are depths.
+    bool alongView = false;
+    bool display = false;  // the host blends fog with sRGB-encoded values; else with linear ones
 };
 
 struct HostLighting {

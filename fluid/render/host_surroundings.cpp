@@ -4,6 +4,7 @@
 #include <rivulet_glad/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -51,8 +52,7 @@ gpu::TextureDesc descOf(const HdrImageView& image) {
 Status upload(const HdrImageView& image, Source& to) {
     const auto wrong = std::find_if_not(image.texels.begin(), image.texels.end(), isRadiance);
     if (wrong != image.texels.end())
-        return badInput(
-            fmt::format("texel {} of the surroundings is negative or not finite; give radiance", wrong - image.texels.begin()));
+        return badInput(fmt::format("texel {} of the surroundings is negative or not finite; give radiance", wrong - image.texels.begin()));
     Result<gpu::Texture> made = gpu::Texture::create(descOf(image));
     if (!made) return made.error();
     to.own = std::move(*made);
@@ -61,16 +61,41 @@ Status upload(const HdrImageView& image, Source& to) {
     return ok();
 }
 
+// Whether the six faces have a level 0 of one size and format.
+bool isWhole(unsigned cube) {
+    const gpu::BoundUnit unit(0, GL_TEXTURE_CUBE_MAP);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_CUBE_MAP, cube);
+    const auto facts = [](GLenum face) {
+        std::array<GLint, 3> all{};
+        glGetTexLevelParameteriv(face, 0, GL_TEXTURE_WIDTH, &all[0]);
+        glGetTexLevelParameteriv(face, 0, GL_TEXTURE_HEIGHT, &all[1]);
+        glGetTexLevelParameteriv(face, 0, GL_TEXTURE_INTERNAL_FORMAT, &all[2]);
+        return all;
+    };
+    const std::array<GLint, 3> first = facts(GL_TEXTURE_CUBE_MAP_POSITIVE_X);
+    bool same = first[0] > 0 && first[0] == first[1];
+    for (GLenum face = 1; face < 6; ++face) same = same && facts(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face) == first;
+    return same;
+}
+
 Status find(unsigned texture, Source& to) {
     if (glIsTexture(texture) == GL_FALSE) return badInput(fmt::format("{} is not a texture of the current context", texture));
     const unsigned target = gpu::targetOfTexture(texture);
     if (target == 0)
         return badInput(
             fmt::format("texture {} of the surroundings has another target; use GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP", texture));
-    GLint width = 0, kind = 0;
+    GLint width = 0, kind = 0, base = 0;
     glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
     glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_RED_TYPE, &kind);
     if (width == 0) return badInput(fmt::format("texture {} of the surroundings has no level 0", texture));
+    glGetTextureParameteriv(texture, GL_TEXTURE_BASE_LEVEL, &base);
+    if (base != 0)
+        return badInput(
+            fmt::format("texture {} of the surroundings has the GL_TEXTURE_BASE_LEVEL {}; level 0 is read: set 0", texture, base));
+    if (target == GL_TEXTURE_CUBE_MAP && !isWhole(texture))
+        return badInput(
+            fmt::format("cube map {} of the surroundings is not complete; give six square faces of one size and format", texture));
     if (kind == GL_INT || kind == GL_UNSIGNED_INT || kind == GL_NONE)
         return badInput(fmt::format("texture {} of the surroundings has no colours that are read as floats", texture));
     to.name = texture;
@@ -122,8 +147,7 @@ void SurroundingsMap::draw(gpu::Program& program, const gpu::Texture& into, int 
 
 Status SurroundingsMap::take(const HostSurroundings& from, size_t mostBytes) {
     if (from.image.given() == (from.texture != 0)) return badInput("the surroundings need an image or a texture: give one of the two");
-    if (!turns(from.turn))
-        return badInput("surroundings: the turn is no rotation; its columns must be perpendicular and of length 1");
+    if (!turns(from.turn)) return badInput("surroundings: the turn is no rotation; its columns must be perpendicular and of length 1");
     Source source{.around = from.image.width};
     if (Status can = from.image.given() ? usable(from.image) : find(from.texture, source); !can) return can;
     int width = kNarrowest;

@@ -52,11 +52,13 @@ struct Axes {
 
 Error skewed() {
     return badInput(
-        "view: the view matrix and the projection skew the picture: its two axes are not at right angles; use a perspective or an orthographic "
+        "view: the view matrix and the projection skew the picture: its two axes are not at right angles; use a perspective or an "
+        "orthographic "
         "projection, and a view without shear");
 }
 Error singular() {
-    return badInput("view: the view matrix or the projection is singular; use matrices of a camera, for example glm::lookAt and glm::perspective");
+    return badInput(
+        "view: the view matrix or the projection is singular; use matrices of a camera, for example glm::lookAt and glm::perspective");
 }
 
 // Sets right, up and their scales from what is across the axis; they are made exactly perpendicular.
@@ -124,7 +126,8 @@ Result<Axes> orthographicAxes(const Rows& m, const dvec4& viewZ, const FrameView
 }  // namespace
 
 Result<HostView> HostView::of(const FrameView& host, const gpu::HostDepth& depth, int width, int height) {
-    if (!isFinite(host.view) || !isFinite(host.projection)) return badInput("view: the view matrix or the projection has a value that is not finite");
+    if (!isFinite(host.view) || !isFinite(host.projection))
+        return badInput("view: the view matrix or the projection has a value that is not finite");
     const mat4& p = host.projection;
     const bool parallel = p[0][3] == 0 && p[1][3] == 0 && p[2][3] == 0;
     if (parallel == (p[3][3] == 0))

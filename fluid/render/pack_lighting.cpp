@@ -17,7 +17,8 @@ static_assert(std::size(decltype(FrameParams::hostLights){}) == kMostHostLights 
 
 Status usable(const HostShadow& s) {
     if (s.texture == 0) return ok();
-    if (!isFinite(s.projection) || !std::isfinite(s.bias)) return badInput("shadow: the projection or the bias has a value that is not finite");
+    if (!isFinite(s.projection) || !std::isfinite(s.bias))
+        return badInput("shadow: the projection or the bias has a value that is not finite");
     if (glIsTexture(s.texture) == GL_FALSE)
         return badInput(fmt::format("shadow map {} is not a texture of the current context", s.texture));
     GLint width = 0;
@@ -25,6 +26,24 @@ Status usable(const HostShadow& s) {
     if (width == 0)
         return badInput(
             fmt::format("shadow map {} is no GL_TEXTURE_2D with a level 0; of an array, give a layer as a texture view", s.texture));
+    const auto is = [&](GLenum what) {
+        GLint value = 0;
+        glGetTextureParameteriv(s.texture, what, &value);
+        return value;
+    };
+    GLint depths = GL_NONE, reds = GL_NONE;
+    glGetTextureLevelParameteriv(s.texture, 0, GL_TEXTURE_DEPTH_TYPE, &depths);
+    glGetTextureLevelParameteriv(s.texture, 0, GL_TEXTURE_RED_TYPE, &reds);
+    const bool floats = reds != GL_NONE && reds != GL_INT && reds != GL_UNSIGNED_INT;
+    if (depths != GL_NONE ? is(GL_DEPTH_STENCIL_TEXTURE_MODE) != GL_DEPTH_COMPONENT : !floats)
+        return badInput(
+            fmt::format("shadow map {} has no depths that are read as floats: its format is of integers or stencils", s.texture));
+    if (is(GL_TEXTURE_SWIZZLE_R) != GL_RED)
+        return badInput(
+            fmt::format("shadow map {} has another GL_TEXTURE_SWIZZLE_R than GL_RED; give a texture view without it", s.texture));
+    if (is(GL_TEXTURE_BASE_LEVEL) != 0)
+        return badInput(
+            fmt::format("shadow map {} has the GL_TEXTURE_BASE_LEVEL {}; level 0 is read: set 0", s.texture, is(GL_TEXTURE_BASE_LEVEL)));
     return ok();
 }
 

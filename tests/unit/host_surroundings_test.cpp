@@ -173,7 +173,8 @@ TEST_F(SurroundingsOfAHost, LightWhatIsMatte) {
 // An image counts while it is read: its texels on the GPU, 16 bytes each, beside the map.
 TEST_F(SurroundingsOfAHost, KeepToTheMemoryLimitWithTheirImage) {
     constexpr int kWide = 1024;
-    const HdrImage image{.name = "", .width = kWide, .height = 2 * kWide, .texels = std::vector<vec3>(size_t{2} * kWide * kWide, vec3(1.0F))};
+    const HdrImage image{
+        .name = "", .width = kWide, .height = 2 * kWide, .texels = std::vector<vec3>(size_t{2} * kWide * kWide, vec3(1.0F))};
     const size_t texels = size_t{16} * image.texels.size();
     const auto set = [&](size_t limit) {
         auto water = WaterRenderer::create({.memoryLimit = limit});
@@ -210,6 +211,24 @@ TEST_F(SurroundingsOfAHost, AreRefusedInASentence) {
     refused("no level 0", {.texture = volume});
     glTextureStorage2D(volume, 1, GL_RGBA8UI, 4, 4);
     refused("read as floats", {.texture = volume});
+    GLuint cube = 0;
+    glGenTextures(1, &cube);
+    glBindTexture(GL_TEXTURE_CUBE_MAP, cube);
+    const auto face = [](GLenum k, GLenum format, int side) {
+        glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + k, 0, static_cast<GLint>(format), side, side, 0, GL_RGB, GL_FLOAT, nullptr);
+    };
+    for (GLenum k = 0; k < 5; ++k) face(k, GL_RGB16F, 4);
+    refused("six square faces", {.texture = cube});
+    face(5, GL_RGB16F, 8);
+    refused("six square faces", {.texture = cube});
+    face(5, GL_RGB32F, 4);
+    refused("six square faces", {.texture = cube});
+    face(5, GL_RGB16F, 4);
+    glTextureParameteri(cube, GL_TEXTURE_BASE_LEVEL, 1);
+    refused("level 0 is read", {.texture = cube});
+    glTextureParameteri(cube, GL_TEXTURE_BASE_LEVEL, 0);
+    const Status whole = renderer_->setSurroundings({.texture = cube});
+    EXPECT_TRUE(whole) << whole.error().message;
     image.texels[5].y = -1;
     refused("texel 5", {.image = image});
     image.texels[5].y = std::numeric_limits<float>::quiet_NaN();

@@ -231,6 +231,23 @@ static void a_renderer_must_not_call_back(rivulet_context* context) {
     DONE(rivulet_snapshot_draw(snapshot, &from, &to, &why));
 }
 
+/* A huge image is refused before any of it is read: there is not a hundredth of it here. */
+static void surroundings_keep_to_the_memory_limit(void) {
+    rivulet_context* context = NULL;
+    const rivulet_context_options options = {
+        .size = sizeof options, .find = eglGetProcAddress, .backend = "cpu", .memory_limit = (size_t)64 << 20};
+    DONE(rivulet_context_create(&options, &context, &why));
+    static const float black[3 * 8 * 4];
+    rivulet_surroundings image = {.size = sizeof image, .pixels = black, .width = 16384, .height = 16384};
+    const size_t before = rivulet_context_memory(context);
+    CHECK(rivulet_context_set_surroundings(context, &image, &why) == RIVULET_FAILED && strstr(why.message, "smaller image") != NULL);
+    CHECK(rivulet_context_memory(context) == before);
+    image.width = 8;
+    image.height = 4;
+    DONE(rivulet_context_set_surroundings(context, &image, &why));
+    rivulet_context_destroy(context);
+}
+
 static int is_green(const unsigned char* p) { return p[0] == 0 && p[1] == 255 && p[2] == 0; }
 
 static void a_hosts_renderer_draws(unsigned char* a, unsigned char* b) {
@@ -324,6 +341,7 @@ int main(void) {
     from.light_colour[0] = from.light_colour[1] = from.light_colour[2] = 1;
     a_hosts_renderer_draws(a, b);
     a_renderer_must_not_call_back(context);
+    surroundings_keep_to_the_memory_limit();
     free(a);
     free(b);
     rivulet_snapshot_destroy(snapshot);

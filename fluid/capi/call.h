@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "engine/core/exception_error.h"
 #include "engine/core/message_line.h"
@@ -34,8 +35,12 @@ inline Status lostContext() {
     return failed("the OpenGL context is lost: destroy the worlds, the skins and the context, and create others");
 }
 
+// Whether this is called by a function of the host that draws a part of a snapshot.
+inline bool isDrawnHere(const rivulet_context& context) { return context.drawer.load() == std::this_thread::get_id(); }
+
 // Error (badInput): another call of the same context is running; OpenGL is needed, and the context's OpenGL context is not current.
 inline Status ready(rivulet_context& context, Needs needs) {
+    if (isDrawnHere(context)) return badInput("the context is in use: a renderer must not call back into it");
     const bool left = context.callback.left();
     if ((context.busy || context.callback.frame != nullptr) && !left)
         return badInput("the context is in use: callbacks must not call back into it, and only one thread at a time may use it");

@@ -8,6 +8,7 @@
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
+#include "fluid/render/host_view.h"
 
 namespace rivulet::capi {
 
@@ -114,7 +115,7 @@ Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     if (o.memory_limit > 0) look.memoryLimit = o.memory_limit;
     if (isSet(o.sky_horizon)) look.sky.horizon = vectorOf(o.sky_horizon);
     if (isSet(o.sky_zenith)) look.sky.zenith = vectorOf(o.sky_zenith);
-    look.sky.sun = glm::normalize(isSet(o.sky_sun) ? vectorOf(o.sky_sun) : look.sky.sun);
+    look.sky.sun = unitAlong(isSet(o.sky_sun) ? vectorOf(o.sky_sun) : look.sky.sun);
     look.sky.sunlight = vec3(1.0F);
     look.sky.clouds = o.clouds;
     auto water = WaterRenderer::create(look);
@@ -168,7 +169,7 @@ void rivulet_context_destroy(rivulet_context* context) {
 rivulet_status rivulet_context_lost(rivulet_context* context, rivulet_error* why) {
     return guarded(why, [&]() -> Status {
         if (context == nullptr) return badInput("context is NULL");
-        if ((context->busy || context->callback.frame != nullptr) && !context->callback.left())
+        if (isDrawnHere(*context) || ((context->busy || context->callback.frame != nullptr) && !context->callback.left()))
             return badInput("the context is in use: report its loss after the call");
         context->lost = true;
         context->current = nullptr;

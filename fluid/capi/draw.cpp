@@ -32,9 +32,10 @@ Status setLighting(const rivulet_lighting* lighting, WaterDraw& draw) {
     if (l->lights_count > kMostHostLights)
         return badInput(fmt::format("lighting.lights_count is {}: give {} at most, the brightest", l->lights_count, kMostHostLights));
     draw.lights.reserve(l->lights_count);
-    for (const rivulet_light& light : std::span(l->lights, l->lights_count)) {
+    for (size_t k = 0; k < l->lights_count; ++k) {
+        const rivulet_light& light = l->lights[k];
         if (!areWithin(light.direction, kBrightest) || !areWithin(light.colour, kBrightest))
-            return badInput(fmt::format("lighting.lights: a direction or colour is not finite, or beyond {}", kBrightest));
+            return badInput(fmt::format("lights[{}]: the direction or the colour is not finite, or beyond {}", k, kBrightest));
         draw.lights.push_back({vectorOf(light.direction), vectorOf(light.colour)});
     }
     const Result<rivulet_shadow> shadow = readStruct(l->shadow, "rivulet_shadow", "lighting.shadow");
@@ -91,7 +92,6 @@ Result<WaterDraw> waterDraw(const FluidLookParams& params, const std::string& li
     frame.width = t.width;
     frame.height = t.height;
     if (isSet(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);
-    frame.lightDirWorld = glm::normalize(frame.lightDirWorld);
     frame.lightColour = isSet(v.light_colour) ? vectorOf(v.light_colour) : vec3(1.0F);
     draw.target = {.framebuffer = t.framebuffer,
                    .x = t.x,
@@ -165,16 +165,14 @@ rivulet_status rivulet_context_set_surroundings(rivulet_context* context, const 
         const Result<rivulet_surroundings> given = readStruct(surroundings, "rivulet_surroundings", "surroundings");
         if (!given) return given.error();
         HostSurroundings from{.texture = given->texture};
-        HdrImage image;
         if (given->pixels != nullptr) {
             constexpr int32_t kLargest = 1 << 15;  // texels
             if (given->width < 1 || given->height < 1 || given->width > kLargest || given->height > kLargest)
                 return badInput(
                     fmt::format("surroundings.pixels are {} x {}: give 1 to {} each way", given->width, given->height, kLargest));
-            image = {.name = "surroundings", .width = given->width, .height = given->height, .texels = {}};
-            image.texels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
-            std::memcpy(image.texels.data(), given->pixels, image.texels.size() * sizeof(vec3));
-            from.image = &image;
+            static_assert(sizeof(vec3) == 3 * sizeof(float));
+            const size_t count = static_cast<size_t>(given->width) * static_cast<size_t>(given->height);
+            from.image = {given->width, given->height, {reinterpret_cast<const vec3*>(given->pixels), count}};
         }
         if (given->turn != nullptr) std::memcpy(&from.turn[0][0], given->turn, sizeof from.turn);
         const CallScope scope(*context, Needs::drawing);

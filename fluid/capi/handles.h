@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "engine/core/jobs.h"
@@ -43,6 +44,7 @@ struct rivulet_context {
     bool lost = false;                              // the OpenGL context has ended: rivulet_context_lost
     bool busy = false;                              // a call is running, of all but those that draw a snapshot
     std::atomic<bool> drawing = false;              // a call that uses OpenGL is running
+    std::atomic<std::thread::id> drawer = {};       // the thread that draws a snapshot; none: of no thread
     rivulet::capi::Callback callback;               // of that call
     std::optional<rivulet::gpu::HostState> hostGl;  // of that call, if it uses OpenGL
     bool plainState = false;                        // as rivulet_context_options::plain_state

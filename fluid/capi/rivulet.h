@@ -25,9 +25,10 @@
  *
  * Callbacks run on the calling thread, before the call returns; log, and those of rivulet_query.h, at the end of the call. A callback that
  * calls back into the same context gets RIVULET_BAD_INPUT. The functions of bodies may throw in C++: the call then goes on and returns
- * RIVULET_FAILED, with the exception's text; what others throw is dropped. A callback may be left by longjmp on the same thread: the next
- * call ends the unfinished one, and a world that was being stepped, reset or created is incomplete (see rivulet_world_step); a little
- * memory is lost. The functions of rivulet_jobs and rivulet_memory may do neither.
+ * RIVULET_FAILED, with the exception's text. So does a draw whose rivulet_renderer throws; what others throw is dropped. A callback may be
+ * left by longjmp on the same thread: the next call ends the unfinished one, and a world that was being stepped, reset or created is
+ * incomplete (see rivulet_world_step); a little memory is lost. A rivulet_renderer may not be left so; the functions of rivulet_jobs and of
+ * rivulet_memory may do neither.
  *
  * Bounds: what is not finite or absurd is RIVULET_BAD_INPUT. Values of a scene have the ranges of docs/parameters.md, and blocks, emitters,
  * bodies and particles lie in the box. Lengths and positions are at most 1e6 m, speeds of walls, bodies and particles at most 1e6 m/s,

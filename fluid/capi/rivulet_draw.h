@@ -18,8 +18,8 @@ typedef struct rivulet_light {
 /* Where the view's light is shaded: the host's shadow map. Beyond it all is lit. */
 typedef struct rivulet_shadow {
     size_t size;
-    /* GL name of a GL_TEXTURE_2D of depths, or of one red channel of floats. Its sampling is not used. The layer of an array can be given
-       as a texture view (glTextureView). */
+    /* GL name of a GL_TEXTURE_2D of depths, or of one red channel of floats, without a swizzle. Level 0 is read, and its sampling is not
+       used. The layer of an array can be given as a texture view (glTextureView). */
     uint32_t texture;
     const float* projection; /* 16 floats: the world that the view transforms -> the map's clip space */
     uint32_t zero_to_one;    /* 1: the map was drawn with GL_ZERO_TO_ONE; 0: clip depths are -1 to 1 */
@@ -38,12 +38,13 @@ typedef enum rivulet_fog_kind {
 /* The fog that the host's picture already contains: the water is seen through it too. */
 typedef struct rivulet_fog {
     size_t size;
-    int32_t kind;        /* a rivulet_fog_kind */
-    float colour[3];     /* radiance in the target's units; with display: display values, sRGB */
-    float density;       /* 1 / the unit of the view's world */
-    float start, end;    /* in that unit */
-    uint32_t along_view; /* 1: d is the depth along the view axis; 0: the distance from the eye */
-    uint32_t display;    /* 1: the host mixes display values; 0: linear ones */
+    int32_t kind;     /* a rivulet_fog_kind */
+    float colour[3];  /* radiance in the target's units; with display: sRGB-encoded */
+    float density;    /* 1 / the unit of the view's world */
+    float start, end; /* in that unit */
+    /* 1: d is the depth along the view axis; 0: the distance from the eye: an orthographic camera has none, and distances are depths */
+    uint32_t along_view;
+    uint32_t display; /* 1: the host blends fog with sRGB-encoded values; 0: with linear ones */
 } rivulet_fog;
 
 typedef struct rivulet_lighting {
@@ -79,7 +80,7 @@ typedef struct rivulet_drawing {
     float near_plane, far_plane; /* m */
     int32_t width, height;       /* pixels */
     /* GL name, bound, its viewport set: a colour of floats, linear radiance, and a depth of floats, both with the scene drawn so far; the
-       state is otherwise OpenGL's default, and may be left in any state. */
+       state is otherwise OpenGL's default, and may be left in any state, except active queries, which must be ended. */
     uint32_t framebuffer;
 } rivulet_drawing;
 

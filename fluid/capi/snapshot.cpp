@@ -28,6 +28,18 @@ class Claim {
     bool mine_;
 };
 
+// The thread of a call that draws, for its length.
+class Drawer {
+  public:
+    explicit Drawer(std::atomic<std::thread::id>& thread) : thread_(thread) { thread_ = std::this_thread::get_id(); }
+    ~Drawer() { thread_ = std::thread::id(); }
+    Drawer(const Drawer&) = delete;
+    Drawer& operator=(const Drawer&) = delete;
+
+  private:
+    std::atomic<std::thread::id>& thread_;
+};
+
 Status inUse() { return badInput("the snapshot is in use: a call fills or draws it; exchange two snapshots"); }
 
 // Runs `work` while another call of the context may run that needs no OpenGL.
@@ -44,6 +56,7 @@ rivulet_status whileStepping(rivulet_snapshot* snapshot, rivulet_error* why, con
         const Claim mine(snapshot->used), alone(context.drawing);
         if (!mine.mine()) return inUse();
         if (!alone.mine()) return badInput("the context is in use: another call draws or uses OpenGL");
+        const Drawer drawer(context.drawer);
         const JobsScope jobs(context.jobs);
         return work();
     });

@@ -4,6 +4,7 @@
 #include <rivulet_glad/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -30,31 +31,52 @@ bool turns(const mat3& m) {
 
 // A texture of a host: what it is, and the texels around its equator.
 struct Source {
-    gpu::Texture own;  // of an image
+    gpu::Texture own = {};  // of an image
     unsigned name = 0;
     GLenum target = GL_TEXTURE_2D;
     int around = 0;
 };
 
-Status upload(const HdrImage& image, Source& to) {
+Status usable(const HdrImageView& image) {
     const auto count = static_cast<size_t>(std::max(image.width, 0)) * static_cast<size_t>(std::max(image.height, 0));
     if (count == 0 || image.texels.size() != count)
         return badInput(fmt::format("the image of the surroundings has {} texels, but is {} x {}; give width times height",
                                     image.texels.size(), image.width, image.height));
-    std::vector<vec4> texels;
-    texels.reserve(count);
-    for (const vec3& t : image.texels) {
-        if (!isFinite(t) || t.x < 0 || t.y < 0 || t.z < 0)
-            return badInput(fmt::format("texel {} of the surroundings is negative or not finite; give radiance", texels.size()));
-        texels.emplace_back(t, 1.0F);
-    }
-    Result<gpu::Texture> made = gpu::Texture::create({.width = image.width, .height = image.height, .format = gpu::Format::rgba32f});
+    return ok();
+}
+
+gpu::TextureDesc descOf(const HdrImageView& image) {
+    return {.width = image.width, .height = image.height, .format = gpu::Format::rgba32f};
+}
+
+Status upload(const HdrImageView& image, Source& to) {
+    const auto wrong = std::find_if_not(image.texels.begin(), image.texels.end(), isRadiance);
+    if (wrong != image.texels.end())
+        return badInput(fmt::format("texel {} of the surroundings is negative or not finite; give radiance", wrong - image.texels.begin()));
+    Result<gpu::Texture> made = gpu::Texture::create(descOf(image));
     if (!made) return made.error();
     to.own = std::move(*made);
-    to.own.upload(std::as_bytes(std::span(texels)));
+    glTextureSubImage2D(to.own.name(), 0, 0, 0, image.width, image.height, GL_RGB, GL_FLOAT, image.texels.data());
     to.name = to.own.name();
-    to.around = image.width;
     return ok();
+}
+
+// Whether the six faces have a level 0 of one size and format.
+bool isWhole(unsigned cube) {
+    const gpu::BoundUnit unit(0, GL_TEXTURE_CUBE_MAP);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_CUBE_MAP, cube);
+    const auto facts = [](GLenum face) {
+        std::array<GLint, 3> all{};
+        glGetTexLevelParameteriv(face, 0, GL_TEXTURE_WIDTH, &all[0]);
+        glGetTexLevelParameteriv(face, 0, GL_TEXTURE_HEIGHT, &all[1]);
+        glGetTexLevelParameteriv(face, 0, GL_TEXTURE_INTERNAL_FORMAT, &all[2]);
+        return all;
+    };
+    const std::array<GLint, 3> first = facts(GL_TEXTURE_CUBE_MAP_POSITIVE_X);
+    bool same = first[0] > 0 && first[0] == first[1];
+    for (GLenum face = 1; face < 6; ++face) same = same && facts(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face) == first;
+    return same;
 }
 
 Status find(unsigned texture, Source& to) {
@@ -63,10 +85,17 @@ Status find(unsigned texture, Source& to) {
     if (target == 0)
         return badInput(
             fmt::format("texture {} of the surroundings has another target; use GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP", texture));
-    GLint width = 0, kind = 0;
+    GLint width = 0, kind = 0, base = 0;
     glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
     glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_RED_TYPE, &kind);
     if (width == 0) return badInput(fmt::format("texture {} of the surroundings has no level 0", texture));
+    glGetTextureParameteriv(texture, GL_TEXTURE_BASE_LEVEL, &base);
+    if (base != 0)
+        return badInput(
+            fmt::format("texture {} of the surroundings has the GL_TEXTURE_BASE_LEVEL {}; level 0 is read: set 0", texture, base));
+    if (target == GL_TEXTURE_CUBE_MAP && !isWhole(texture))
+        return badInput(
+            fmt::format("cube map {} of the surroundings is not complete; give six square faces of one size and format", texture));
     if (kind == GL_INT || kind == GL_UNSIGNED_INT || kind == GL_NONE)
         return badInput(fmt::format("texture {} of the surroundings has no colours that are read as floats", texture));
     to.name = texture;
@@ -117,17 +146,21 @@ void SurroundingsMap::draw(gpu::Program& program, const gpu::Texture& into, int 
 }
 
 Status SurroundingsMap::take(const HostSurroundings& from, size_t mostBytes) {
-    if ((from.image != nullptr) == (from.texture != 0)) return badInput("the surroundings need an image or a texture: give one of the two");
-    if (!turns(from.turn)) return badInput("HostSurroundings::turn is no rotation; its columns must be perpendicular and of length 1");
-    Source source;
-    if (Status found = from.image != nullptr ? upload(*from.image, source) : find(from.texture, source); !found) return found;
+    if (from.image.given() == (from.texture != 0)) return badInput("the surroundings need an image or a texture: give one of the two");
+    if (!turns(from.turn)) return badInput("surroundings: the turn is no rotation; its columns must be perpendicular and of length 1");
+    Source source{.around = from.image.width};
+    if (Status can = from.image.given() ? usable(from.image) : find(from.texture, source); !can) return can;
     int width = kNarrowest;
     while (2 * width <= std::min(source.around, kWidest)) width *= 2;
-    if (!map_ || map_.width() != width) {
-        const gpu::TextureDesc desc{.width = width, .height = width / 2, .format = gpu::Format::rgba16f, .mips = 0};
-        if (gpu::settled(desc).bytes() > mostBytes)
-            return failed(fmt::format("surroundings need {}, and {} are allowed for pictures; allow more",
-                                      readableBytes(gpu::settled(desc).bytes()), readableBytes(mostBytes)));
+    const gpu::TextureDesc desc{.width = width, .height = width / 2, .format = gpu::Format::rgba16f, .mips = 0};
+    const bool other = !map_ || map_.width() != width;
+    const size_t needed = (from.image.given() ? descOf(from.image).bytes() : 0) + (other ? gpu::settled(desc).bytes() : 0);
+    if (needed > mostBytes)
+        return failed(fmt::format("surroundings need {}, and {} are allowed for pictures; allow more, or give a smaller image",
+                                  readableBytes(needed), readableBytes(mostBytes)));
+    if (from.image.given())
+        if (Status copied = upload(from.image, source); !copied) return copied;
+    if (other) {
         Result<gpu::Texture> made = gpu::Texture::create(desc);
         if (!made) return made.error();
         map_ = std::move(*made);

@@ -19,7 +19,8 @@ class SurroundingsMap {
     static Result<SurroundingsMap> create(const ShaderFiles& files);
 
     // Blurs them on the GPU and does not wait for it. Error (badInput): none or two are given, a value of the image that is not finite or
-    // is negative, a texture of another kind, a turn that is no rotation; (failed): out of memory. Then the ones before are kept.
+    // is negative, a texture of another kind, a turn that is no rotation; (failed): out of memory, or beyond `mostBytes` with the
+    // image while it is read. Then the ones before are kept.
     Status take(const HostSurroundings& from, size_t mostBytes);
 
     const gpu::Texture& map() const { return map_; }     // as makeEnvironmentMap()'s

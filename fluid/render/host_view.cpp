@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 
+#include "fluid/render/host_lighting.h"
+
 namespace rivulet {
 
 bool isFinite(const mat4& m) {
@@ -21,15 +23,16 @@ constexpr double kAlike = 1.0e-9;  // difference of two clip depths
 
 Status usable(const FrameView& v, bool parallel) {
     if (!std::isfinite(v.unitsPerMetre) || !(v.unitsPerMetre > 0))
-        return badInput("FrameView::unitsPerMetre must be positive and finite: 1 for metres, 100 for centimetres");
+        return badInput("view: the units per metre must be positive and finite: 1 for metres, 100 for centimetres");
     if (parallel && !(v.nearPlane >= 0))
-        return badInput("FrameView::nearPlane of an orthographic projection must be 0 or more; move the eye back along the view axis");
+        return badInput("view: the near plane of an orthographic projection must be 0 or more; move the eye back along the view axis");
     if ((!parallel && !(v.nearPlane > 0)) || !(v.farPlane > v.nearPlane) || !std::isfinite(v.farPlane))
         return badInput(
-            "FrameView::nearPlane and farPlane must be positive and finite, the second beyond the first; for an infinite projection, give "
+            "view: the near and the far plane must be positive and finite, the second beyond the first; for an infinite projection, give "
             "the depth of the farthest object");
-    if (!rivulet::isFinite(v.lightDirWorld) || v.lightDirWorld == vec3(0.0F) || !rivulet::isFinite(v.lightColour))
-        return badInput("FrameView::lightDirWorld or lightColour is not finite, or the direction is 0");
+    if (!rivulet::isFinite(v.lightDirWorld) || v.lightDirWorld == vec3(0.0F))
+        return badInput("view: the light's direction is 0 or not finite; give a vector towards it");
+    if (!isRadiance(v.lightColour)) return badInput("view: the light's colour is negative or not finite; give radiance");
     return ok();
 }
 
@@ -49,11 +52,13 @@ struct Axes {
 
 Error skewed() {
     return badInput(
-        "FrameView::view and projection skew the picture: its two axes are not at right angles; use a perspective or an orthographic "
+        "view: the view matrix and the projection skew the picture: its two axes are not at right angles; use a perspective or an "
+        "orthographic "
         "projection, and a view without shear");
 }
 Error singular() {
-    return badInput("FrameView::view or projection is singular; use matrices of a camera, for example glm::lookAt and glm::perspective");
+    return badInput(
+        "view: the view matrix or the projection is singular; use matrices of a camera, for example glm::lookAt and glm::perspective");
 }
 
 // Sets right, up and their scales from what is across the axis; they are made exactly perpendicular.
@@ -121,15 +126,16 @@ Result<Axes> orthographicAxes(const Rows& m, const dvec4& viewZ, const FrameView
 }  // namespace
 
 Result<HostView> HostView::of(const FrameView& host, const gpu::HostDepth& depth, int width, int height) {
-    if (!isFinite(host.view) || !isFinite(host.projection)) return badInput("FrameView::view or projection has a value that is not finite");
+    if (!isFinite(host.view) || !isFinite(host.projection))
+        return badInput("view: the view matrix or the projection has a value that is not finite");
     const mat4& p = host.projection;
     const bool parallel = p[0][3] == 0 && p[1][3] == 0 && p[2][3] == 0;
     if (parallel == (p[3][3] == 0))
         return badInput(
-            "FrameView::projection is neither a perspective nor an orthographic projection; use glm::perspective, glFrustum or "
+            "view: the projection is neither a perspective nor an orthographic projection; use glm::perspective, glFrustum or "
             "glm::ortho, and move an offset of the eye into the view");
     if (host.view[0].w != 0 || host.view[1].w != 0 || host.view[2].w != 0 || host.view[3].w != 1)
-        return badInput("FrameView::view projects; use glm::lookAt, and put the projection into FrameView::projection");
+        return badInput("view: the view matrix projects; use glm::lookAt, and put the projection into the other matrix");
     if (Status can = usable(host, parallel); !can) return can.error();
 
     dmat4 view(host.view);
@@ -163,6 +169,7 @@ Result<HostView> HostView::of(const FrameView& host, const gpu::HostDepth& depth
     out.view.nearPlane = static_cast<float>(n);
     out.view.farPlane = static_cast<float>(f);
     out.view.cameraPosWorld = vec3(a.eye);
+    out.view.lightDirWorld = unitAlong(host.lightDirWorld);
     dmat4 canonical(glm::transpose(dmat3(a.right, a.up, -a.forward)));
     canonical[3] = dvec4(-(dmat3(canonical) * a.eye), 1);
     out.view.view = mat4(canonical);

@@ -9,6 +9,8 @@
 namespace rivulet {
 
 bool isFinite(const mat4& m);
+// The unit vector along `v`, of any length but 0: in double, where the squares of the smallest floats are above 0.
+inline vec3 unitAlong(const vec3& v) { return vec3(glm::normalize(dvec3(v))); }
 
 struct HostView {
     FrameView view;  // the same camera; its picture is the host's, mirrored as `flipX` and `flipY` say

@@ -370,7 +370,7 @@ TEST_F(WaterInAnyView, IsRefusedWhereThereIsNoCamera) {
     });
     refusedFor("neither", [&](FrameView& v) { v.projection[3][3] = 0.5F; });
     refusedFor("neither", [&](FrameView& v) { v.projection = mat4(0.0F); });
-    refusedFor("unitsPerMetre", [&](FrameView& v) { v.unitsPerMetre = 0; });
+    refusedFor("units per metre", [&](FrameView& v) { v.unitsPerMetre = 0; });
     refusedFor("depth of the farthest object", [&](FrameView& v) { v.farPlane = std::numeric_limits<float>::infinity(); });
     refusedFor("move the eye back", [&](FrameView& v) {
         fromFarFlat(v);

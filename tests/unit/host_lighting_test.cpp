@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rivulet_glad/gl.h>
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -22,7 +23,7 @@ class LightOfAHost : public testing::PoolInAHost {
         PoolInAHost::SetUp();
         if (!renderer_) return;
         const HdrImage black{.name = "black", .width = 2, .height = 1, .texels = {vec3(0.0F), vec3(0.0F)}};
-        ASSERT_TRUE(renderer_->setSurroundings({.image = &black}));
+        ASSERT_TRUE(renderer_->setSurroundings({.image = black}));
     }
     void TearDown() override {
         for (gpu::Buffer* buffer : {&foam_[0], &foam_[1], &drops_, &pendants_}) *buffer = {};
@@ -109,6 +110,19 @@ TEST_F(LightOfAHost, IsTheSumOfItsLights) {
         }
         for (const size_t count : lit) EXPECT_GT(count, 200U);
     }
+}
+
+// A direction has any length but 0: squares of the smallest floats are 0, those of the largest infinite.
+TEST_F(LightOfAHost, ComesFromItsDirectionOfAnyLength) {
+    const auto picture = [&](float length) {
+        FrameView view = camera();
+        view.lightDirWorld = length * kSun;
+        view.lightColour = vec3(1.0F);
+        const std::vector<HostLight> lights = {{length * kLow, vec3(0.5F)}};
+        return draw("direction", view, {.lights = lights}, cloudy(), empty(vec3(0.1F)));
+    };
+    const std::vector<vec4> plain = picture(1);
+    for (const float length : {0x1p-84F, 0x1p-100F, 0x1p100F}) EXPECT_EQ(picture(length), plain) << length;
 }
 
 TEST_F(LightOfAHost, WithoutColourChangesNoBit) {
@@ -311,25 +325,59 @@ TEST_F(LightOfAHost, FogsWaterByItsOwnDistance) {
     FluidLook ink = clear();
     ink.absorption = vec3(1.0e4F);
     ink.refractiveIndex = 1.0F;
-    const FrameView view = camera();
-    const vec3 forward(-glm::transpose(mat3(view.view))[2]);
-    for (const Fog& row : kFogs) {
-        SCOPED_TRACE(row.name);
-        const std::vector<vec4> pixels =
-            draw(fmt::format("fog_black_{}", row.name).c_str(), view, {.fog = row.fog}, ink, foggy(row, forward));
-        const PoolPicture host(view, empty(vec3(0.0F)));
-        size_t seen = 0;
-        for (int y = 0; y < kHeight; ++y)
-            for (int x = 0; x < kWidth; ++x) {
-                float length = 0;
-                const vec3 d = host.ray(x, y);
-                if (!meets(view.cameraPosWorld, d, length)) continue;
-                ++seen;
-                const vec3 expected = row.mixed(vec3(0.0F), row.passes(row.fog.alongView ? length * glm::dot(d, forward) : length));
-                EXPECT_LT(glm::length(vec3(pixels[static_cast<size_t>(y * kWidth + x)]) - expected), 0.01F) << x << " " << y;
-            }
-        EXPECT_GT(seen, 4000U);
-    }
+    const struct {
+        const char* name;
+        float unit;
+        bool srgb;
+        std::function<void(FrameView&)> camera;
+    } views[] = {
+        {"plain", 1, false, [](FrameView&) {}},
+        // Without an eye: distances are depths.
+        {"orthographic", 1, false, [](FrameView& v) { v.projection = glm::ortho(-1.6F, 1.6F, -1.2F, 1.2F, v.nearPlane, v.farPlane); }},
+        {"mirrored", 1, false, [](FrameView& v) { v.projection = glm::scale(mat4(1.0F), vec3(1, -1, 1)) * v.projection; }},
+        {"centimetres", 100, false, [](FrameView&) {}},
+        {"srgb", 1, true, [](FrameView&) {}}};
+    for (const auto& seen : views)
+        for (const Fog& row : kFogs) {
+            SCOPED_TRACE(fmt::format("{}, {}", seen.name, row.name));
+            FrameView view = camera();
+            seen.camera(view);
+            const vec3 forward(-glm::transpose(mat3(view.view))[2]);
+            const PoolPicture::Scene linear = foggy(row, forward);
+            const PoolPicture::Scene stored = [&](const vec3& eye, const vec3& dir, float& length) {
+                const vec3 c = linear(eye, dir, length);
+                return seen.srgb ? vec3(Fog::display(c.x), Fog::display(c.y), Fog::display(c.z)) : c;
+            };
+            const PoolPicture host(view, stored, seen.srgb ? GL_RGBA8 : GL_RGBA16F);
+            FrameView theirs = view;  // clip depths do not change with the unit
+            HostFog fog = row.fog;
+            theirs.unitsPerMetre = seen.unit;
+            theirs.view[3] = vec4(seen.unit * vec3(view.view[3]), 1.0F);
+            theirs.nearPlane *= seen.unit;
+            theirs.farPlane *= seen.unit;
+            if (seen.unit != 1)
+                theirs.projection = glm::perspective(0.8F, static_cast<float>(kWidth) / kHeight, theirs.nearPlane, theirs.farPlane);
+            fog.density /= seen.unit;
+            fog.start *= seen.unit;
+            fog.end *= seen.unit;
+            const Status drawn = renderer_->draw(theirs, pool_, ink, host.target(), nullptr, {.fog = fog});
+            ASSERT_TRUE(drawn) << drawn.error().message;
+            std::vector<vec4> pixels = host.pixels();
+            if (seen.srgb)
+                for (vec4& p : pixels) p = vec4(Fog::linear(p.x), Fog::linear(p.y), Fog::linear(p.z), p.w);
+            keep(fmt::format("fog_black_{}_{}", seen.name, row.name).c_str(), pixels);
+            size_t count = 0;
+            for (int y = 0; y < kHeight; ++y)
+                for (int x = 0; x < kWidth; ++x) {
+                    float length = 0;
+                    const vec3 d = host.ray(x, y);
+                    if (!meets(host.eye(x, y), d, length)) continue;
+                    ++count;
+                    const vec3 expected = row.mixed(vec3(0.0F), row.passes(row.fog.alongView ? length * glm::dot(d, forward) : length));
+                    EXPECT_LT(glm::length(vec3(pixels[static_cast<size_t>(y * kWidth + x)]) - expected), 0.01F) << x << " " << y;
+                }
+            EXPECT_GT(count, 4000U);
+        }
 }
 
 // Far away everything is fog: water, spray and drops too, as exp(-density distance) says of how much is left.
@@ -344,12 +392,17 @@ TEST_F(LightOfAHost, EndsInFogFarAway) {
     view.farPlane = 100;
     view.projection = glm::perspective(0.09F, static_cast<float>(kWidth) / kHeight, view.nearPlane, view.farPlane);
     for (const char* name : {"screen_space", "points"}) {
-        const Fog fog{"far", {.kind = HostFog::exponential, .colour = kFogColour, .density = 0.2F}};
+        const auto picture = [&](const char* file, const HostFog& fog) {
+            return draw(fmt::format("fog_{}_{}", file, name).c_str(), view, {.fog = fog}, cloudy(), empty(kFogColour),
+                        renderers().find(name));
+        };
+        size_t water = 0;
+        for (const vec4& p : picture("none", {})) water += glm::length(vec3(p) - kFogColour) > 0.05F ? 1 : 0;
+        EXPECT_GT(water, 4000U) << name;
+        const HostFog far{.kind = HostFog::exponential, .colour = kFogColour, .density = 0.2F};
         // Nearer than 30 m is nothing; the brightest light of the scene is a glint of 8.
         const float most = 8.0F * std::exp(-0.2F * 29.0F);
-        for (const vec4& p :
-             draw(fmt::format("fog_far_{}", name).c_str(), view, {.fog = fog.fog}, cloudy(), empty(kFogColour), renderers().find(name)))
-            EXPECT_LT(glm::length(vec3(p) - kFogColour), most + 0.001F);
+        for (const vec4& p : picture("far", far)) EXPECT_LT(glm::length(vec3(p) - kFogColour), most + 0.001F);
     }
 }
 
@@ -414,16 +467,32 @@ TEST_F(LightOfAHost, IsRefusedInASentence) {
     const std::vector<HostLight> many(8);
     refused("7 at most", {.lights = many});
     const HostLight none{vec3(0.0F), vec3(1.0F)}, lost{vec3(0, 1, 0), vec3(nan)};
-    refused("direction is 0", {.lights = std::span(&none, 1)});
-    refused("not finite", {.lights = std::span(&lost, 1)});
+    refused("lights[0]: the direction is 0", {.lights = std::span(&none, 1)});
+    const HostLight two[] = {{vec3(0, 1, 0), vec3(1.0F)}, {vec3(0, 1, 0), vec3(-1.0F)}};
+    refused("lights[0]: the colour is negative or not finite", {.lights = std::span(&lost, 1)});
+    refused("lights[1]: the colour is negative or not finite", {.lights = two});
     refused("not a texture", {.shadow = {.texture = 54321}});
     GLuint array = 0;
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &array);
     refused("as a texture view", {.shadow = {.texture = array}});
+    const auto map = [](GLenum format) {
+        GLuint name = 0;
+        glCreateTextures(GL_TEXTURE_2D, 1, &name);
+        glTextureStorage2D(name, 2, format, 2, 2);
+        return name;
+    };
+    for (const GLenum format : {GL_R32UI, GL_R16I, GL_STENCIL_INDEX8}) refused("read as floats", {.shadow = {.texture = map(format)}});
+    const GLuint stencil = map(GL_DEPTH24_STENCIL8), swizzled = map(GL_DEPTH_COMPONENT24), higher = map(GL_DEPTH_COMPONENT24);
+    glTextureParameteri(stencil, GL_DEPTH_STENCIL_TEXTURE_MODE, GL_STENCIL_INDEX);
+    refused("stencils", {.shadow = {.texture = stencil}});
+    glTextureParameteri(swizzled, GL_TEXTURE_SWIZZLE_R, GL_ONE);
+    refused("GL_TEXTURE_SWIZZLE_R", {.shadow = {.texture = swizzled}});
+    glTextureParameteri(higher, GL_TEXTURE_BASE_LEVEL, 1);
+    refused("level 0 is read", {.shadow = {.texture = higher}});
     refused("not finite", {.shadow = {.texture = array, .projection = mat4(nan)}});
     refused("ends beyond its start", {.fog = {.kind = HostFog::linear, .start = 2, .end = 2}});
     refused("give 0 or more", {.fog = {.kind = HostFog::exponential, .density = -1}});
-    refused("HostFog::colour", {.fog = {.kind = HostFog::exponential, .colour = vec3(nan)}});
+    refused("fog: the colour", {.fog = {.kind = HostFog::exponential, .colour = vec3(nan)}});
 }
 
 }  // namespace

@@ -38,9 +38,9 @@ class PoolPicture {
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
                 float length = INFINITY;
-                const vec3 d = ray(x, y), c = scene(view.cameraPosWorld, d, length);
+                const vec3 from = eye(x, y), d = ray(x, y), c = scene(from, d, length);
                 colours.emplace_back(c, 1.0F);
-                const vec4 at = clip * vec4(view.cameraPosWorld + (std::isfinite(length) ? length : 0.0F) * d, 1.0F);
+                const vec4 at = clip * vec4(from + (std::isfinite(length) ? length : 0.0F) * d, 1.0F);
                 depths.push_back(std::isfinite(length) ? std::min(0.5F * at.z / at.w + 0.5F, 1.0F) : 1.0F);
             }
         glCreateFramebuffers(1, &framebuffer_);
@@ -62,14 +62,24 @@ class PoolPicture {
         glReadPixels(0, 0, kWidth, kHeight, GL_RGBA, GL_FLOAT, all.data());
         return all;
     }
-    // Unit, world: through the middle of a pixel. The two points are within any clip space.
-    vec3 ray(int x, int y) const {
-        const glm::dmat4 back = glm::inverse(glm::dmat4(view_.projection) * glm::dmat4(view_.view));
-        const glm::dvec4 at = back * glm::dvec4((2 * x + 1.0) / kWidth - 1, (2 * y + 1.0) / kHeight - 1, 0.5, 1);
-        return glm::normalize(vec3(glm::dvec3(at) / at.w) - view_.cameraPosWorld);
+    // Unit, world: through the middle of a pixel.
+    vec3 ray(int x, int y) const { return parallel() ? forward() : glm::normalize(through(x, y) - view_.cameraPosWorld); }
+    // Where it starts: with an orthographic projection, at depth 0.
+    vec3 eye(int x, int y) const {
+        const vec3 at = through(x, y);
+        return parallel() ? at - glm::dot(at - view_.cameraPosWorld, forward()) * forward() : view_.cameraPosWorld;
     }
+    vec3 forward() const { return -glm::transpose(mat3(view_.view))[2]; }
 
   private:
+    bool parallel() const { return view_.projection[3][3] == 1; }
+    // A point within any clip space.
+    vec3 through(int x, int y) const {
+        const glm::dmat4 back = glm::inverse(glm::dmat4(view_.projection) * glm::dmat4(view_.view));
+        const glm::dvec4 at = back * glm::dvec4((2 * x + 1.0) / kWidth - 1, (2 * y + 1.0) / kHeight - 1, 0.5, 1);
+        return vec3(glm::dvec3(at) / at.w);
+    }
+
     FrameView view_;
     GLuint framebuffer_ = 0;
 };

@@ -190,7 +190,7 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
         glCreateTextures(GL_TEXTURE_2D, 1, &map);
         glTextureStorage2D(map, 1, GL_DEPTH_COMPONENT24, 4, 4);
         const HdrImage grey{.name = "grey", .width = 2, .height = 1, .texels = {vec3(0.5F), vec3(0.5F)}};
-        for (const HostSurroundings& around : {HostSurroundings{.image = &grey}, HostSurroundings{.texture = cube}}) {
+        for (const HostSurroundings& around : {HostSurroundings{.image = grey}, HostSurroundings{.texture = cube}}) {
             const Status set = (*renderer)->setSurroundings(around);
             ASSERT_TRUE(set) << set.error().message;
             EXPECT_EQ(difference(before, glSnapshot()), "") << "setSurroundings()";

@@ -74,7 +74,7 @@ TEST_F(SurroundingsOfAHost, ThatAreUniformAreReflectedByFresnelsShare) {
     const FrameView view = camera();
     const vec3 around(2.0F, 1.0F, 0.5F), behind(0.25F, 0.5F, 0.75F);
     const HdrImage image = imageOf([&](const vec3&) { return around; }, 64);
-    ASSERT_TRUE(renderer_->setSurroundings({.image = &image}));
+    ASSERT_TRUE(renderer_->setSurroundings({.image = image}));
     const std::vector<vec4> pixels = draw("uniform_sky", view, behind);
     const PoolPicture host(view, empty(behind));
     size_t seen = 0;
@@ -125,7 +125,7 @@ TEST_F(SurroundingsOfAHost, AreSeenInTheMirrorsDirection) {
         row.camera(view);
         const Sky hosts = sky(glm::transpose(row.turn));
         const HdrImage image = imageOf(hosts, 128);
-        const HostSurroundings forms[] = {{.image = &image, .turn = row.turn},
+        const HostSurroundings forms[] = {{.image = image, .turn = row.turn},
                                           {.texture = textureOf(image), .turn = row.turn},
                                           {.texture = cubeOf(hosts, 64), .turn = row.turn}};
         for (size_t form = 0; form < 3; ++form) {
@@ -155,7 +155,7 @@ TEST_F(SurroundingsOfAHost, AreSeenInTheMirrorsDirection) {
 // The light of all directions on what is matte: a cosine's integral over a sky that is bright above and dark below.
 TEST_F(SurroundingsOfAHost, LightWhatIsMatte) {
     const HdrImage image = imageOf([](const vec3& d) { return vec3(d.y > 0 ? 1.0F : 0.0F); }, 256);
-    ASSERT_TRUE(renderer_->setSurroundings({.image = &image}));
+    ASSERT_TRUE(renderer_->setSurroundings({.image = image}));
     // Milk: opaque and white, so that it shows the light on it; reflection and refraction aside, 0.9 and more of it.
     FluidLook milk = clear();
     milk.scattering = vec3(4000.0F);
@@ -170,6 +170,29 @@ TEST_F(SurroundingsOfAHost, LightWhatIsMatte) {
     EXPECT_NEAR(pixels[kHeight / 2 * kWidth + kWidth / 2].x, 1.0F, 0.05F);
 }
 
+// An image counts while it is read: its texels on the GPU, 16 bytes each, beside the map.
+TEST_F(SurroundingsOfAHost, KeepToTheMemoryLimitWithTheirImage) {
+    constexpr int kWide = 1024;
+    const HdrImage image{
+        .name = "", .width = kWide, .height = 2 * kWide, .texels = std::vector<vec3>(size_t{2} * kWide * kWide, vec3(1.0F))};
+    const size_t texels = size_t{16} * image.texels.size();
+    const auto set = [&](size_t limit) {
+        auto water = WaterRenderer::create({.memoryLimit = limit});
+        EXPECT_TRUE(water) << water.error().message;
+        const size_t before = (*water)->bytes();
+        Status taken = (*water)->setSurroundings({.image = image});
+        if (!taken) EXPECT_EQ((*water)->bytes(), before);
+        return std::pair(taken, (*water)->bytes());
+    };
+    const auto [all, bytes] = set(SIZE_MAX);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_LT(bytes, texels);
+    EXPECT_TRUE(set(bytes + texels).first);
+    const Status refused = set(bytes + texels - 1).first;
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("give a smaller image"), std::string::npos) << refused.error().message;
+}
+
 TEST_F(SurroundingsOfAHost, AreRefusedInASentence) {
     HdrImage image = imageOf([](const vec3&) { return vec3(1.0F); }, 16);
     const auto refused = [&](const char* word, const HostSurroundings& surroundings) {
@@ -178,8 +201,8 @@ TEST_F(SurroundingsOfAHost, AreRefusedInASentence) {
         EXPECT_NE(set.error().message.find(word), std::string::npos) << set.error().message;
     };
     refused("give one of the two", {});
-    refused("give one of the two", {.image = &image, .texture = 1});
-    refused("perpendicular", {.image = &image, .turn = mat3(2.0F)});
+    refused("give one of the two", {.image = image, .texture = 1});
+    refused("perpendicular", {.image = image, .turn = mat3(2.0F)});
     refused("not a texture", {.texture = 12345});
     GLuint volume = 0;
     glCreateTextures(GL_TEXTURE_3D, 1, &volume);
@@ -188,12 +211,30 @@ TEST_F(SurroundingsOfAHost, AreRefusedInASentence) {
     refused("no level 0", {.texture = volume});
     glTextureStorage2D(volume, 1, GL_RGBA8UI, 4, 4);
     refused("read as floats", {.texture = volume});
+    GLuint cube = 0;
+    glGenTextures(1, &cube);
+    glBindTexture(GL_TEXTURE_CUBE_MAP, cube);
+    const auto face = [](GLenum k, GLenum format, int side) {
+        glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + k, 0, static_cast<GLint>(format), side, side, 0, GL_RGB, GL_FLOAT, nullptr);
+    };
+    for (GLenum k = 0; k < 5; ++k) face(k, GL_RGB16F, 4);
+    refused("six square faces", {.texture = cube});
+    face(5, GL_RGB16F, 8);
+    refused("six square faces", {.texture = cube});
+    face(5, GL_RGB32F, 4);
+    refused("six square faces", {.texture = cube});
+    face(5, GL_RGB16F, 4);
+    glTextureParameteri(cube, GL_TEXTURE_BASE_LEVEL, 1);
+    refused("level 0 is read", {.texture = cube});
+    glTextureParameteri(cube, GL_TEXTURE_BASE_LEVEL, 0);
+    const Status whole = renderer_->setSurroundings({.texture = cube});
+    EXPECT_TRUE(whole) << whole.error().message;
     image.texels[5].y = -1;
-    refused("texel 5", {.image = &image});
+    refused("texel 5", {.image = image});
     image.texels[5].y = std::numeric_limits<float>::quiet_NaN();
-    refused("texel 5", {.image = &image});
+    refused("texel 5", {.image = image});
     image.texels.pop_back();
-    refused("width times height", {.image = &image});
+    refused("width times height", {.image = image});
 }
 
 }  // namespace

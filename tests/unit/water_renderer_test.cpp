@@ -151,8 +151,9 @@ TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
         spoil(view);
         EXPECT_NE(said(view, host.target()).find(word), std::string::npos) << said(view, host.target());
     };
-    refusedFor("lightColour", [&](FrameView& v) { v.lightColour.y = nan; });
+    refusedFor("light's colour", [&](FrameView& v) { v.lightColour.y = nan; });
     refusedFor("direction is 0", [&](FrameView& v) { v.lightDirWorld = vec3(0.0F); });
+    refusedFor("colour is negative", [&](FrameView& v) { v.lightColour.y = -1; });
 
     // Targets that cannot receive water.
     const auto refusedInto = [&](const char* word, const std::function<void(HostTarget&)>& spoil) {

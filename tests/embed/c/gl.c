@@ -261,7 +261,7 @@ int main(void) {
     REFUSED(rivulet_world_draw(world, &wrong, &to, &why), "projection is NULL");
     wrong = from;
     wrong.far_plane = INFINITY;
-    REFUSED(rivulet_world_draw(world, &wrong, &to, &why), "farPlane");
+    REFUSED(rivulet_world_draw(world, &wrong, &to, &why), "far plane");
     rivulet_target nothing = to;
     nothing.height = 0;
     REFUSED(rivulet_world_draw(world, &from, &nothing, &why), "x 0");

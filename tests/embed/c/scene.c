@@ -200,6 +200,54 @@ static void paint(void* user, const rivulet_drawing* drawing) {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+/* What a renderer calls back is refused, in the draw of a world and of a snapshot. */
+static int refused_calls;
+static void call_back(void* user, const rivulet_drawing* drawing) {
+    (void)drawing;
+    rivulet_context* context = user;
+    rivulet_error no;
+    rivulet_stats stats = {.size = sizeof stats};
+    refused_calls += rivulet_world_stats(world, &stats, &no) == RIVULET_BAD_INPUT;
+    refused_calls += rivulet_world_step(world, NULL, 1.0 / 60, &no) == RIVULET_BAD_INPUT;
+    refused_calls += rivulet_world_draw(world, &from, &to, &no) == RIVULET_BAD_INPUT;
+    refused_calls += rivulet_world_snapshot(world, snapshot, &no) == RIVULET_BAD_INPUT;
+    refused_calls += rivulet_snapshot_draw(snapshot, &from, &to, &no) == RIVULET_BAD_INPUT;
+    refused_calls += rivulet_context_lost(context, &no) == RIVULET_BAD_INPUT;
+    rivulet_snapshot_destroy(snapshot); /* is refused and logged */
+}
+
+static void a_renderer_must_not_call_back(rivulet_context* context) {
+    const rivulet_renderer renderer = {.size = sizeof renderer, .draw = call_back, .user = context};
+    from.renderer = &renderer;
+    DONE(rivulet_world_snapshot(world, snapshot, &why));
+    refused_calls = 0;
+    DONE(rivulet_world_draw(world, &from, &to, &why));
+    CHECK(refused_calls == 6);
+    DONE(rivulet_snapshot_draw(snapshot, &from, &to, &why));
+    CHECK(refused_calls == 12);
+    from.renderer = NULL;
+    DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+    DONE(rivulet_world_snapshot(world, snapshot, &why));
+    DONE(rivulet_snapshot_draw(snapshot, &from, &to, &why));
+}
+
+/* A huge image is refused before any of it is read: there is not a hundredth of it here. */
+static void surroundings_keep_to_the_memory_limit(void) {
+    rivulet_context* context = NULL;
+    const rivulet_context_options options = {
+        .size = sizeof options, .find = eglGetProcAddress, .backend = "cpu", .memory_limit = (size_t)64 << 20};
+    DONE(rivulet_context_create(&options, &context, &why));
+    static const float black[3 * 8 * 4];
+    rivulet_surroundings image = {.size = sizeof image, .pixels = black, .width = 16384, .height = 16384};
+    const size_t before = rivulet_context_memory(context);
+    CHECK(rivulet_context_set_surroundings(context, &image, &why) == RIVULET_FAILED && strstr(why.message, "smaller image") != NULL);
+    CHECK(rivulet_context_memory(context) == before);
+    image.width = 8;
+    image.height = 4;
+    DONE(rivulet_context_set_surroundings(context, &image, &why));
+    rivulet_context_destroy(context);
+}
+
 static int is_green(const unsigned char* p) { return p[0] == 0 && p[1] == 255 && p[2] == 0; }
 
 static void a_hosts_renderer_draws(unsigned char* a, unsigned char* b) {
@@ -292,6 +340,8 @@ int main(void) {
     thick_fog_is_all_that_is_seen(a);
     from.light_colour[0] = from.light_colour[1] = from.light_colour[2] = 1;
     a_hosts_renderer_draws(a, b);
+    a_renderer_must_not_call_back(context);
+    surroundings_keep_to_the_memory_limit();
     free(a);
     free(b);
     rivulet_snapshot_destroy(snapshot);

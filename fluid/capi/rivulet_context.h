@@ -109,7 +109,8 @@ RIVULET_API rivulet_status rivulet_context_lost(rivulet_context* context, rivule
 RIVULET_API const char* rivulet_context_device(const rivulet_context* context);
 /* stop 1: from now on, a step of a world ends within milliseconds, on a GPU with what it has in its queue; 0: not any more. It may be
    called from any thread and from a signal handler, also while another call of the context is running. While a stop is asked, worlds can
-   be neither created nor stepped nor asked about the water, and skins are not stepped: RIVULET_FAILED. See rivulet_world_step. */
+   be neither created nor stepped nor asked about the water, attributes of particles are not set, and skins are not stepped:
+   RIVULET_FAILED. See rivulet_world_step. */
 RIVULET_API void rivulet_context_stop(rivulet_context* context, uint32_t stop);
 /* Bytes in use now by the device's buffers and by images. */
 RIVULET_API size_t rivulet_context_memory(const rivulet_context* context);

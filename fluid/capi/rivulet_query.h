@@ -84,8 +84,9 @@ RIVULET_API rivulet_status rivulet_world_volumes(rivulet_world* world, rivulet_v
 RIVULET_API rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
                                                        rivulet_error* why);
 
-/* Sets fluid.attributes[attribute] of the particles with these ids: `values` are 4 floats each, finite. The water does not depend on it; a
-   reset gives them their values of t = 0 again. Does not wait. rivulet_world_paint does it in a volume. */
+/* Sets fluid.attributes[attribute] of the particles with these ids: `values` are 4 floats each, finite; of an id that is there twice, one
+   of them. The water does not depend on it; a reset gives them their values of t = 0 again. Does not wait. rivulet_world_paint does it in a
+   volume. */
 RIVULET_API rivulet_status rivulet_world_set_attribute(rivulet_world* world, uint32_t attribute, const uint32_t* ids, const float* values,
                                                        size_t count, rivulet_error* why);
 /* Sets fluid.attributes[attribute] of all particles that are in the volume now; its id is not read. `value`: 4 floats. Does not wait. */

@@ -156,9 +156,9 @@ RIVULET_API rivulet_status rivulet_world_set_sources(rivulet_world* world, const
 /* On a GPU the values are two or three frames old. */
 RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why);
 
+enum { RIVULET_ATTRIBUTES = 4 }; /* at most, of a world */
 /* Copies the particles to host memory, at most `capacity`. Their order changes from step to step; ids do not. Arrays may be NULL. Waits for
    the device. */
-enum { RIVULET_ATTRIBUTES = 4 }; /* at most, of a world */
 typedef struct rivulet_particles {
     size_t size;
     size_t capacity;   /* of each array */
@@ -167,7 +167,7 @@ typedef struct rivulet_particles {
     float* densities;  /* over the rest density */
     uint32_t* ids;
     size_t count;                          /* out: the number of all particles, also where capacity is smaller */
-    float* attributes[RIVULET_ATTRIBUTES]; /* 4 each: the values of fluid.attributes */
+    float* attributes[RIVULET_ATTRIBUTES]; /* 4 each: the values of fluid.attributes; NULL beyond them */
 } rivulet_particles;
 RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why);
 

@@ -275,6 +275,10 @@ rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* 
         const Result<rivulet_particles> input = readStruct(particles, "rivulet_particles", "particles");
         if (!input) return input.error();
         const rivulet_particles& to = *input;
+        const size_t known = world->params.fluid.attributes.size();
+        for (size_t k = known; k < std::size(to.attributes); ++k)
+            if (to.attributes[k] != nullptr)
+                return badInput(fmt::format("particles.attributes[{}] is given, and fluid.attributes has {}: set it to NULL", k, known));
         const HostParticles all = readParticles(*world->world);
         for (size_t n = 0; n < std::min(all.position.size(), to.capacity); ++n) {
             if (to.positions != nullptr) put(vec3(all.position[n]), to.positions + 3 * n);

@@ -10,6 +10,7 @@
 #include "engine/core/assert.h"
 #include "engine/core/file_system.h"
 #include "engine/core/input_file.h"
+#include "fluid/sim/sources/dry.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
@@ -23,6 +24,7 @@ constexpr uint32_t kVersion = 1;
 constexpr uint32_t kMostAbout = 1U << 20U;  // bytes of the text
 constexpr uint32_t kFrame = 0x4D415246, kIndex = 0x58444E49;
 constexpr size_t kArrays = 12;
+constexpr uint32_t kHalves = 1, kDryBit = 8;
 constexpr float kMostRecorded = 1e15F;  // m, or any other unit: the square still is a float
 
 struct Header {
@@ -58,7 +60,7 @@ struct Counts {
     std::array<uint64_t, kArrays> items;
     Bounds box;
     float spacing;
-    uint32_t halves;
+    uint32_t flags;  // 1: halves; from kDryBit on: the number of dry volumes, whose array is the last
 };
 static_assert(sizeof(Counts) == 8 * kArrays + 32 && std::is_trivially_copyable_v<Counts>);
 
@@ -112,8 +114,9 @@ void itemsOf(const std::vector<uint8_t>& planes, std::vector<T>& items) {
 }
 
 std::string pack(const RecordedFrame& frame, uint64_t& bytes) {
-    Counts counts{{}, frame.box, frame.spacing, frame.halves ? 1U : 0U};
-    bytes = sizeof(Counts);
+    const auto volumes = static_cast<uint32_t>(std::min(frame.dry.size(), kMostDry));
+    Counts counts{{}, frame.box, frame.spacing, (frame.halves ? kHalves : 0U) | volumes << kDryBit};
+    bytes = sizeof(Counts) + volumes * sizeof(DryVolume);
     eachArray(frame, [&](const auto& array, size_t k) {
         counts.items[k] = array.size();
         bytes += array.size() * sizeof(array[0]);
@@ -125,6 +128,7 @@ std::string pack(const RecordedFrame& frame, uint64_t& bytes) {
         const std::vector<uint8_t> planes = planesOf(array);
         packer.put(std::span<const uint8_t>(planes));
     });
+    packer.put(std::span<const DryVolume>(frame.dry).first(volumes));
     packer.finish();
     return out;
 }
@@ -138,7 +142,7 @@ bool unpack(std::span<const std::byte> packed, uint64_t bytes, RecordedFrame& fr
     if (whole) {
         frame.box = counts[0].box;
         frame.spacing = counts[0].spacing;
-        frame.halves = counts[0].halves != 0;
+        frame.halves = (counts[0].flags & kHalves) != 0;
     }
     eachArray(frame, [&](auto& array, size_t k) {
         const size_t size = sizeof(array[0]);
@@ -152,6 +156,13 @@ bool unpack(std::span<const std::byte> packed, uint64_t bytes, RecordedFrame& fr
         whole = unpacker.take(counts[0].items[k] * size, planes);
         if (whole) itemsOf(planes, array);
     });
+    const size_t volumes = whole ? counts[0].flags >> kDryBit : 0;
+    if (why.empty() && volumes > std::min(kMostDry, static_cast<size_t>(left / sizeof(DryVolume))))
+        why = "its arrays are larger than itself";
+    if (why.empty() && whole) {
+        left -= volumes * sizeof(DryVolume);
+        whole = unpacker.take(volumes, frame.dry);
+    }
     if (why.empty() && (!whole || !unpacker.finish())) why = unpacker.why();
     if (why.empty() && left != 0) why = "its arrays are smaller than itself";
     return why.empty();
@@ -178,7 +189,8 @@ bool plain(uint32_t) { return true; }
 bool drawable(RecordedFrame& f) {
     bool all = std::isfinite(f.time) && plain(f.spacing) && f.spacing > 0 && plain(f.box.min) && plain(f.box.max);
     eachArray(f, [&](const auto& array, size_t) { all = all && std::ranges::all_of(array, [](const auto& item) { return plain(item); }); });
-    return all;
+    const auto sound = [](const DryVolume& v) { return plain(v.centre) && plain(v.reach) && plain(v.turn); };
+    return all && std::ranges::all_of(f.dry, sound);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "engine/core/new_file.h"
 #include "engine/core/result.h"
 #include "fluid/sim/world/fluid_params.h"
+#include "shaders/fluid/sources/dry_volume.h"
 
 namespace rivulet {
 
@@ -35,6 +36,7 @@ struct RecordedFrame {
     std::vector<vec4> foam, foamVelocity;  // as ParticleView::foamDrawn and foamVelocity
     std::vector<mat4> places;              // of solids that move, own frame -> world
     std::vector<vec3> corners;             // m, of solids that bend, one after the other
+    std::vector<DryVolume> dry;            // as FluidWorld::dry
 };
 
 class RecordingWriter {

@@ -26,6 +26,7 @@ void frameOf(const FluidWorld& world, RecordedFrame& frame) {
     frame.spacing = particles.spacing;
     frame.halves = device.backend() != Backend::gl && !device.glShare().by;  // as FluidUpload brings them over
     frame.box = {world.params().box.min, world.params().box.max};
+    frame.dry = world.dry();
     // Free slots and samples on bodies are not drawn.
     std::vector<uint32_t> kept;
     const auto choose = [&](const Buffer& from, size_t count, const auto& drawn) {

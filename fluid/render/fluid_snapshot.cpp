@@ -16,7 +16,6 @@ Status FluidSnapshot::take(const FluidWorld& world, std::span<const vec4> drops,
     Device& device = world.device();
     onGpu_ = device.backend() == Backend::gl;
     viscosity_ = world.particles().viscosity;
-    dry_ = world.dry();
     const WetnessView wet = world.wetness();
     wetSurface_ = wet.surface && !wet.surface->points.empty() ? wet.surface : nullptr;
     if (onGpu_) {
@@ -37,7 +36,6 @@ void FluidSnapshot::take(RecordedFrame frame, float viscosity) {
     pendants_.clear();
     viscosity_ = viscosity;
     wetSurface_ = nullptr;
-    dry_.clear();
     onGpu_ = false;
     taken_ = true;
 }
@@ -47,6 +45,7 @@ Status FluidSnapshot::takeOnGpu(const FluidWorld& world) {
     frame_.time = world.time();
     frame_.spacing = particles.spacing;
     frame_.box = {world.params().box.min, world.params().box.max};
+    frame_.dry = world.dry();
     count_ = particles.count > 0 ? particles.slots : 0;
     foamCount_ = particles.foam != nullptr ? particles.foamSlots : 0;
     Device& device = world.device();

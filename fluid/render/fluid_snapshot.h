@@ -14,7 +14,6 @@
 #include "engine/compute/device.h"
 #include "fluid/io/recording.h"
 #include "fluid/sim/solids/wet_surface.h"
-#include "shaders/fluid/sources/dry_volume.h"
 
 namespace rivulet {
 
@@ -36,12 +35,11 @@ class FluidSnapshot {
 
     bool taken_ = false, onGpu_ = false;
     std::shared_ptr<const void> revision_;  // a new one with each take
-    RecordedFrame frame_;                   // of cpu and cl: all; of gl: time, spacing, box
+    RecordedFrame frame_;                   // of cpu and cl: all; of gl: time, spacing, box, dry
     float viscosity_ = 0;
     std::shared_ptr<const WetSurface> wetSurface_;
     std::vector<float> wetness_;  // of cpu and cl
     std::vector<vec4> drops_, pendants_;
-    std::vector<DryVolume> dry_;
     // Of gl.
     struct Copy {
         Buffer memory;

@@ -249,6 +249,7 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
     out.spacing = frame.spacing;
     out.radius = look.radiusSpacings * frame.spacing;
     out.bounds = frame.box;
+    out.dry = frame.dry;
     out.foamCount = static_cast<uint32_t>(frame.foam.size());
     const bool normals = look.showsNormals() && !frame.normal.empty();
     std::vector<Array> arrays;
@@ -296,7 +297,7 @@ Result<FluidView> FluidUpload::view(const FluidSnapshot& s, const FluidLookParam
         out = *uploaded;
     }
     out.viscosity = s.viscosity_;
-    out.dry = s.dry_;
+    out.dry = s.frame_.dry;
     if (Status brought = bringDrops(s.drops_, s.pendants_, out); !brought) return brought.error();
     if (!s.wetSurface_) {
         hold(s.revision_, look, normals, out);

@@ -3,7 +3,9 @@
 #include <rivulet_glad/gl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
+#include <span>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -329,6 +331,26 @@ TEST_P(AttributesInGl, AreThoseThatAreReadBack) {
 }
 INSTANTIATE_TEST_SUITE_P(Devices, AttributesInGl, testing::Combine(testing::Values("cpu", "gl", "cl"), testing::Values("fine", "fast")),
                          [](const auto& row) { return std::string(std::get<0>(row.param)) + "_" + std::get<1>(row.param); });
+
+// Neither a write that would be skipped is reported as done, nor does a stop that has ended matter.
+TEST(AttributesAre, NotSetDuringAStop) {
+    const auto device = makeTestCpu();
+    auto world = FluidWorld::create(*device, dam(), {}, {});
+    ASSERT_TRUE(world);
+    std::atomic<bool> stop = true;
+    device->stopOn(&stop);
+    const uint32_t ids[] = {0};
+    const Volume all{.size = vec3(100.0F)};
+    EXPECT_FALSE((*world)->setAttribute(1, ids, std::span(&kRed, 1)));
+    EXPECT_FALSE((*world)->paint(1, all, kRed));
+    stop = false;
+    EXPECT_TRUE((*world)->paint(1, all, kRed));
+    const ParticleView view = (*world)->particles();
+    size_t red = 0;
+    for (const vec4& value : device->readAll<vec4>(*view.attributes[1], view.count)) red += value == kRed ? 1 : 0;
+    EXPECT_GE(red, (*world)->stats().particles);
+    device->stopOn(nullptr);
+}
 
 TEST(AttributesAre, RefusedInASentence) {
     const auto device = makeTestCpu();

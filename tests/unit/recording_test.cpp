@@ -47,6 +47,7 @@ RecordedFrame frameNumber(size_t k) {
     frame.foamVelocity = noise(random, k);
     frame.places.assign(2, mat4(static_cast<float>(k)));
     frame.corners.assign(3, vec3(0.5F, static_cast<float>(k), 0));
+    frame.dry.assign(k % 4, {vec4(static_cast<float>(k)), vec4(0.25F), vec4(0, 0, 0, 1)});
     return frame;
 }
 
@@ -60,7 +61,8 @@ bool same(const RecordedFrame& a, const RecordedFrame& b) {
     for (size_t k = 0; k < a.ellipsoids.size(); ++k) all = all && sameBits(a.ellipsoids[k], b.ellipsoids[k]);
     return all && sameBits(a.position, b.position) && sameBits(a.velocity, b.velocity) && sameBits(a.id, b.id) &&
            sameBits(a.normal, b.normal) && sameBits(a.absorption, b.absorption) && sameBits(a.foam, b.foam) &&
-           sameBits(a.foamVelocity, b.foamVelocity) && sameBits(a.places, b.places) && sameBits(a.corners, b.corners);
+           sameBits(a.foamVelocity, b.foamVelocity) && sameBits(a.places, b.places) && sameBits(a.corners, b.corners) &&
+           sameBits(a.dry, b.dry);
 }
 
 // The bytes of a recording of kFrames, and where each frame begins.

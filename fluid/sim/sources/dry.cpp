@@ -62,6 +62,17 @@ std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, const DryBo
     return placed;
 }
 
+bool hasMoved(const DryVolume& from, const DryVolume& to, float way) {
+    const float turned = std::min(glm::length(to.turn - from.turn), glm::length(to.turn + from.turn));  // about half of the angle
+    return from.centre.w != to.centre.w || from.reach != to.reach ||
+           glm::distance(vec3(from.centre), vec3(to.centre)) + 2 * turned * glm::length(vec3(from.reach)) > way;
+}
+
+Bounds boundsOf(const DryVolume& volume) {
+    const vec3 around(glm::length(vec3(volume.reach)));
+    return {vec3(volume.centre) - around, vec3(volume.centre) + around};
+}
+
 bool isDry(std::span<const DryVolume> volumes, const vec3& place) {
     return std::ranges::any_of(volumes, [&](const DryVolume& v) {
         const Pose pose{vec3(v.centre), quat(v.turn.w, v.turn.x, v.turn.y, v.turn.z)};

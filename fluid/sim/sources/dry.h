@@ -28,6 +28,7 @@ struct DryParams {
     vec3 size{0.0F};            // m, edge lengths or axes
     int body = -1;              // the id of the body that it moves with; -1: none
     void visit(ParamVisitor& v);
+    bool operator==(const DryParams&) const = default;
 };
 
 // Error (badInput): more than kMostDry, values out of range, a size that is not positive, a body that is not among `ids`.
@@ -40,6 +41,9 @@ struct DryBodies {
 };
 // In the world, with the bodies where they are.
 std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, const DryBodies& bodies);
+// Whether it has moved by more than `way` (m), turned or changed its size.
+bool hasMoved(const DryVolume& from, const DryVolume& to, float way);
+Bounds boundsOf(const DryVolume& volume);  // m, around it
 bool isDry(std::span<const DryVolume> volumes, const vec3& place);
 
 }  // namespace rivulet

@@ -114,8 +114,8 @@ class FluidWorld {
     Status removeBody(uint32_t id);
     const std::vector<uint32_t>& bodyIds() const;  // of bodies() and bodyLoads(), in the order in which they were added
 
-    // Sets fluid.attributes[attribute] of particles: of those with these ids (ParticleView::id), a value each; or of all in a volume now,
-    // whose id is not read. Neither waits. Error (badInput): no such attribute or id; values that are not finite; (failed): out of memory.
+    // Sets fluid.attributes[attribute] of the particles with these ids (ParticleView::id, each once), or of all in a volume now, whose id
+    // is not read. Neither waits. Error (badInput): no such attribute or id; values that are not finite; (failed): out of memory, a stop.
     Status setAttribute(size_t attribute, std::span<const uint32_t> ids, std::span<const vec4> values);
     Status paint(size_t attribute, const Volume& inside, const vec4& value);
 

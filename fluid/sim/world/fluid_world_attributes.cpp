@@ -15,6 +15,12 @@ namespace {
 
 bool finite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
 
+// Of a write that a stop would skip.
+Status stopped(const Device& device) {
+    if (!device.interrupted() && !device.stopAsked()) return ok();
+    return failed("the attributes were not set, because a stop was asked: end the stop, then set them again");
+}
+
 Status known(const FluidParams& params, size_t attribute) {
     if (attribute < params.attributes.size()) return ok();
     return badInput(fmt::format("there is no attribute {}: fluid.attributes has {}", attribute, params.attributes.size()));
@@ -64,13 +70,15 @@ Status FluidWorld::setAttribute(size_t attribute, std::span<const uint32_t> ids,
         if (!made) return made.error();
         *buffer = std::move(*made);
     }
+    w.device->goOn();  // another owner of buffers may have been interrupted
+    if (Status s = stopped(*w.device); !s) return s;
     w.device->writeAll<uint32_t>(w.attributeIds, ids);
     w.device->writeAll<vec4>(w.attributeValues, values);
     AttributeWrite block{};
     block.count = static_cast<uint32_t>(ids.size());
     w.device->run(w.setAttribute, block, {&w.attributeIds, &w.attributeValues, &w.particles.attributesOf[attribute]}, block.count);
     w.attributesChanged();
-    return ok();
+    return stopped(*w.device);
 }
 
 Status FluidWorld::paint(size_t attribute, const Volume& inside, const vec4& value) {
@@ -79,13 +87,15 @@ Status FluidWorld::paint(size_t attribute, const Volume& inside, const vec4& val
     if (Status s = known(w.params, attribute); !s) return s;
     if (Status s = checkVolume(inside, "the volume to paint"); !s) return s;
     if (!finite(value)) return badInput(fmt::format("the value of attribute {} is not finite: correct it", attribute));
+    w.device->goOn();
+    if (Status s = stopped(*w.device); !s) return s;
     AttributeWrite block{};
     block.inside = shapeOf(inside);
     block.value = value;
     block.count = w.particles.count;
     w.device->run(w.paintAttribute, block, {&w.particles.id, &w.particles.positionNext, &w.particles.attributesOf[attribute]}, block.count);
     w.attributesChanged();
-    return ok();
+    return stopped(*w.device);
 }
 
 }  // namespace rivulet

@@ -237,10 +237,9 @@ Status FluidWorld::Impl::removeInside(const std::function<bool(const vec3&)>& wi
 }
 
 void FluidWorld::Impl::setDry(const std::vector<DryParams>& volumes) {
-    if (volumes.empty() && !dry.any()) return;
+    if (volumes == dry.params()) return;  // a slider of the look sets them again
     dry.set(volumes, bodies.ids(), bodies.starts(), bodies.states());
     hasFree = true;
-    if (sleep) sleep->disturbAll(clock.time);
 }
 
 Status FluidWorld::Impl::replaceSources(const Sources& next) {

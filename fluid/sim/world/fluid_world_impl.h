@@ -64,8 +64,9 @@ struct FluidWorld::Impl {
     Sources sourceSetup;  // emitters and sinks
     SourcePasses sources;
     DryPasses dry;
-    ExchangePasses exchange;  // for other owners of water
-    uint64_t withdrawn = 0;   // particles removed by them
+    std::vector<DryVolume> dryBefore;  // where sleeping water last was disturbed by them
+    ExchangePasses exchange;           // for other owners of water
+    uint64_t withdrawn = 0;            // particles removed by them
     // Particles that emitters and sinks spawned and removed before setSources() replaced them.
     struct {
         uint64_t emitted = 0, drained = 0;

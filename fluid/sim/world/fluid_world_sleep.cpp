@@ -69,6 +69,15 @@ void FluidWorld::Impl::disturbSleep() {
         const vec3 half = p.shape == "box" ? 0.5F * p.size : vec3(p.radius);
         disturbAround({p.position - half, p.position + half});
     }
+    const std::vector<DryVolume>& volumes = dry.volumes();
+    for (size_t k = 0; k < std::max(volumes.size(), dryBefore.size()); ++k) {
+        if (k < volumes.size() && k < dryBefore.size() && !hasMoved(dryBefore[k], volumes[k], way)) continue;
+        if (k < dryBefore.size()) disturbAround(boundsOf(dryBefore[k]));
+        if (k < volumes.size()) disturbAround(boundsOf(volumes[k]));
+        dryBefore.resize(std::max(dryBefore.size(), k + 1));
+        if (k < volumes.size()) dryBefore[k] = volumes[k];
+    }
+    dryBefore.resize(volumes.size());
 }
 
 }  // namespace rivulet

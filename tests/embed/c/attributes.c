@@ -67,12 +67,15 @@ static void what_cannot_be_is_refused(rivulet_world* world) {
     REFUSED(rivulet_world_set_attribute(world, 0, NULL, red, 1, &why), "NULL");
     REFUSED(rivulet_world_set_attribute(world, 0, &none, red, 1, &why), "ids[0] is 8192");
     REFUSED(rivulet_world_set_attribute(world, 0, ids, endless, 1, &why), "not finite");
+    static float more[4 * MOST];
+    rivulet_particles beyond = {.size = sizeof beyond, .capacity = MOST, .attributes = {NULL, NULL, more}};
+    REFUSED(rivulet_world_particles(world, &beyond, &why), "particles.attributes[2] is given, and fluid.attributes has 2");
     REFUSED(rivulet_world_set_attribute(NULL, 0, ids, red, 1, &why), "NULL");
     REFUSED(rivulet_world_paint(world, 0, &flat, red, &why), "volume.shape is 2");
     REFUSED(rivulet_world_paint(world, 0, &box, NULL, &why), "NULL");
     REFUSED(rivulet_world_set(world, "fluid.attributes.0.x=1", &why), "fixed");
     REFUSED(rivulet_world_set_sources(world, "{\"dry\": [{\"size\": [1, 0, 1]}]}", &why), "give three lengths above 0");
-    REFUSED(rivulet_world_set_sources(world, "{\"dry\": [{\"size\": [1, 1, 1], \"body\": 0}]}", &why), "there are 0 bodies");
+    REFUSED(rivulet_world_set_sources(world, "{\"dry\": [{\"size\": [1, 1, 1], \"body\": 0}]}", &why), "no body has this id");
 }
 
 /* Nothing is where it is dry, and what was there is gone. */

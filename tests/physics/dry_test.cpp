@@ -162,36 +162,6 @@ TEST(Dry, AVolumeMovesThroughTheWater) {
     }
 }
 
-// Water that sleeps wakes where a volume comes, and nowhere else; volumes that are set again as they are wake none.
-TEST(Dry, AVolumeWakesTheWaterItComesTo) {
-    FluidParams p;
-    p.spacing = 0.04F;
-    p.sleep.on = true;
-    p.box.max = vec3(1.6F, 0.6F, 0.24F);
-    p.blocks = {{.min = vec3(0.0F), .max = vec3(1.6F, 0.24F, 0.24F)}};
-    const auto device = cpu();
-    Sources sources{.dry = {{.position = vec3(0.2F, 0.5F, 0.12F), .size = vec3(0.1F)}}};
-    auto made = FluidWorld::create(*device, p, {}, {}, sources);
-    ASSERT_TRUE(made) << made.error().message;
-    FluidWorld& world = **made;
-    const auto settle = [&] {
-        for (int k = 0; k < 600 && world.stats().asleep < world.stats().particles; ++k) world.step({}, 1.0 / 60);
-        return world.stats().asleep == world.stats().particles;
-    };
-    ASSERT_TRUE(settle());
-    ASSERT_TRUE(world.setSources(sources));
-    world.step({}, 1.0 / 60);
-    EXPECT_EQ(world.stats().asleep, world.stats().particles) << "the same volumes";
-    for (int frame = 0; frame < 30; ++frame) {
-        sources.dry[0].position.y = 0.5F - 0.015F * static_cast<float>(frame);
-        ASSERT_TRUE(world.setSources(sources));
-        world.step({}, 1.0 / 60);
-        ASSERT_EQ(inside(waterOf(world), {sources.dry[0].position, quat(1, 0, 0, 0)}, sources.dry[0].size), 0U) << "frame " << frame;
-    }
-    EXPECT_GT(world.stats().drained, 0.0);
-    EXPECT_GT(world.stats().asleep, 0U) << "far away it sleeps on";
-}
-
 // A volume in a body that was added stays with it, whichever other body goes.
 TEST(Dry, AVolumeFollowsItsBodyWhileOthersComeAndGo) {
     FluidParams p;

@@ -223,6 +223,29 @@ class Wakes : public testing::TestWithParam<const char*> {
 };
 INSTANTIATE_TEST_SUITE_P(Methods, Wakes, testing::Values("dfsph", "pbf"), [](const auto& of) { return std::string(of.param); });
 
+TEST_P(Wakes, ByADryVolumeThatComes) {
+    Sources dry;
+    int frame = 0;
+    wakes(
+        [&](FluidParams& p, Solids&, Sources& sources) {
+            const vec3 size = p.blocks[0].max;
+            dry.dry = {{.position = vec3(0.5F * size.x, 1.7F * size.y, 0.5F * size.z), .size = 0.4F * size}};
+            sources = dry;
+        },
+        [&](FluidWorld& world, FluidInputs&) {
+            if (++frame == 2) EXPECT_EQ(world.stats().asleep, world.stats().particles) << "volumes that are set again wake none";
+            if (frame > 1) dry.dry[0].position.y -= 0.02F * dry.dry[0].size.y;
+            ASSERT_TRUE(world.setSources(dry));
+            const vec3 low = dry.dry[0].position - 0.499F * dry.dry[0].size, high = dry.dry[0].position + 0.499F * dry.dry[0].size;
+            if (frame < 3) return;
+            // The volume of the frame before, less the way to this one.
+            for (const vec4& x : byId(world))
+                EXPECT_FALSE(x.w >= 0 && glm::all(glm::greaterThan(vec3(x), low + 0.03F * dry.dry[0].size)) &&
+                             glm::all(glm::lessThan(vec3(x), high)))
+                    << "frame " << frame;
+        });
+}
+
 TEST_P(Wakes, ByGravityThatTurns) {
     wakes({}, [](FluidWorld&, FluidInputs& in) { in.gravity = vec3(3, -9.3F, 0); });
 }

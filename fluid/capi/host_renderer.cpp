@@ -1,7 +1,6 @@
 #include "fluid/capi/host_renderer.h"
 
 #include <fmt/format.h>
-#include <rivulet_glad/gl.h>
 
 #include <cstring>
 #include <exception>

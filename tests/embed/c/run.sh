@@ -30,7 +30,7 @@ if nm -D --undefined-only "$library" | grep -q __tsan_init; then
     # What has several threads; the others would take hours.
     export TSAN_OPTIONS="suppressions=$here/../../checks/races.supp"
     read -ra flags <<<"$(pkg-config --cflags --libs rivulet egl gl) -Wl,-rpath,$(dirname "$library") -lm -lpthread -lstdc++"
-    for program in jobs walls overlap; do
+    for program in jobs overlap; do
         cc -O1 -g -fsanitize=thread -std=c11 $warnings "$here/$program.c" "${flags[@]}" -o "$work/$program"
         status=0
         "$work/$program" || status=$?

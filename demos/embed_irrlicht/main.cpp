@@ -1,4 +1,4 @@
-// Water in Irrlicht, whose world is left-handed: +z is into the picture.
+// Water in Irrlicht, an engine with left-handed coordinates: +z points into the picture.
 // embed_irrlicht [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames and writes the last one; --dry draws no water.
 #include <cstdio>
 #include <cstdlib>

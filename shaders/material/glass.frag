@@ -32,7 +32,7 @@ void main() {
     vec3 wall = baseColour * (1.0 - opacity);
     passed = vec4(pow(max(wall, vec3(1.0e-4)), vec3(0.5 / max(nv, 0.12))) * (1.0 - mirror), 1.0);
     float lit = meshShadow(posWorld, n), rough = max(roughness, 0.03);
-    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    vec3 h = halfway(toEye, frame.lightDir.xyz);
     float nl = max(dot(n, frame.lightDir.xyz), 0.0);
     float sun = highlight(nl, nv, max(dot(n, h), 0.0), max(rough * rough, 0.002)) * nl * fresnel(max(dot(toEye, h), 0.02), kIndex);
     colour = vec4(environment(reflect(-toEye, n), rough) * mirror + frame.lightColour.rgb * (lit * min(sun, 8.0)), 1.0);

@@ -22,7 +22,7 @@ vec2 hairAt(vec2 uv, vec2 strand) {
 // Of light from `lamp`: the diffuse part and the two highlights.
 vec3 hairLobes(vec3 along, vec3 normal, vec3 toEye, vec3 lamp) {
     float cosine = dot(along, lamp), side = smoothstep(-0.35, 0.6, dot(normal, lamp));
-    vec3 h = normalize(lamp + toEye), first = normalize(along - 0.10 * normal), second = normalize(along + 0.14 * normal);
+    vec3 h = halfway(lamp, toEye), first = normalize(along - 0.10 * normal), second = normalize(along + 0.14 * normal);
     float a = dot(first, h), b = dot(second, h);
     return vec3(sqrt(max(1.0 - cosine * cosine, 0.0)), pow(max(1.0 - a * a, 0.0), 60.0), pow(max(1.0 - b * b, 0.0), 14.0)) * side;
 }

@@ -185,7 +185,7 @@ void main() {
         if (seen < least) film = normalize(film + toEye * (least - seen));
         float wetRough = mix(layerLook.z, layerLook.y, q.drop);
         vec3 wetShine = gloss(film, toEye, vec3(r0), wetRough, q.variance, falling * lit, mix(open * open, 1.0, 0.3 * q.drop));
-        float out_ = 1.0 - (r0 + (1.0 - r0) * pow(1.0 - max(dot(film, toEye), 0.0), 5.0));
+        float out_ = 1.0 - (r0 + (1.0 - r0) * schlick(dot(film, toEye)));
         vec3 dimmed = matte * exp(-layerAbsorption.rgb * (2.0 * q.path)) * out_;
         matte = mix(matte, dimmed, cover);
         // Metal and glass keep their mirror under the liquid, dimmed by it; a dielectric's is lost to one of nearly its own index, under a film

@@ -28,12 +28,12 @@ vec3 spread(vec3 red, vec3 green, vec3 blue, vec3 lamp, float bend) {
 // Specular reflection of skin: a broad lobe, and a sharper one where it is oily; both use one sample of the environment.
 vec3 twoLobes(vec3 normal, vec3 toEye, vec3 f0, float rough, float oily, float variance, vec3 lightArriving, float open) {
     float nv = max(dot(normal, toEye), 1.0e-3), nl = max(dot(normal, frame.lightDir.xyz), 0.0);
-    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    vec3 h = halfway(toEye, frame.lightDir.xyz);
     float nh = max(dot(normal, h), 0.0), vh = max(dot(toEye, h), 0.0);
     float broad = rough + 0.08, sharp = 0.62 * rough;
     float extra = min(variance, 0.5), b2 = broad * broad, s2 = sharp * sharp;
-    float share = 0.65 * (0.6 + 0.4 * oily), glint = 0.45 * oily, away = 1.0 - vh;
-    vec3 fresnel = f0 + (1.0 - f0) * (away * away * away * away * away);
+    float share = 0.65 * (0.6 + 0.4 * oily), glint = 0.45 * oily;
+    vec3 fresnel = f0 + (1.0 - f0) * schlick(vh);
     float both = share * highlight(nl, nv, nh, sqrt(b2 * b2 + extra)) + glint * highlight(nl, nv, nh, sqrt(s2 * s2 + extra));
     float wide = sqrt(sqrt(mix(b2 * b2, s2 * s2, glint / (share + glint)) + extra));
     return fresnel * (both * nl) * lightArriving + glossOf(f0, wide, nv) * environment(reflect(-toEye, normal), wide) * (open * (share + glint));

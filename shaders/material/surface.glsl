@@ -1,5 +1,6 @@
 // The surface function of meshes and floor: Lambert plus GGX (Walter et al. 2007; Smith visibility after Hammon 2017), lit by the key light
 // and the environment. Needs frame.glsl and environment.glsl.
+#include "shaders/render/fresnel.glsl"
 struct Surface {
     vec3 baseColour;   // linear reflectance
     float roughness;   // 0..1
@@ -25,10 +26,10 @@ vec3 glossOf(vec3 f0, float roughness, float nv) {
 vec3 directLight(Surface s, vec3 toEye, vec3 towards, vec3 lightArriving) {
     float nv = max(dot(s.normal, toEye), 1.0e-3);
     float nl = max(dot(s.normal, towards), 0.0);
-    vec3 h = normalize(toEye + towards);
+    vec3 h = halfway(toEye, towards);
     float nh = max(dot(s.normal, h), 0.0), vh = max(dot(toEye, h), 0.0);
     vec3 f0 = mix(vec3(0.04), s.baseColour, s.metallic);
-    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
+    vec3 fresnel = f0 + (1.0 - f0) * schlick(vh);
     vec3 matte = s.baseColour * (1.0 - s.metallic);
     return (matte * 0.3183099 + fresnel * highlight(nl, nv, nh, max(s.roughness * s.roughness, 0.01))) * nl * lightArriving;
 }
@@ -50,11 +51,11 @@ vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving) {
 vec3 gloss(vec3 normal, vec3 toEye, vec3 f0, float roughness, float variance, vec3 lightArriving, float open) {
     float nv = max(dot(normal, toEye), 1.0e-3);
     float nl = max(dot(normal, frame.lightDir.xyz), 0.0);
-    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    vec3 h = halfway(toEye, frame.lightDir.xyz);
     float nh = max(dot(normal, h), 0.0), vh = max(dot(toEye, h), 0.0);
     float a = sqrt(roughness * roughness * roughness * roughness + min(variance, 0.5));  // of GGX, widened (Olano and Baker 2010)
     float wide = sqrt(a);
-    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
+    vec3 fresnel = f0 + (1.0 - f0) * schlick(vh);
     vec3 direct = fresnel * (highlight(nl, nv, nh, max(a, 0.003)) * nl) * lightArriving;
     return direct + glossOf(f0, wide, nv) * environment(reflect(-toEye, normal), wide) * open;
 }

@@ -49,7 +49,7 @@ vec3 darkened(vec3 albedo, Wet w) {
 // surface's own reflection is lost, except that of metal.
 vec3 wetted(vec3 matte, vec3 shine, float metallic, Wet w, vec3 toEye, vec3 lightArriving, float open) {
     const vec3 f0 = vec3(0.0204);
-    float fresnel = f0.x + (1.0 - f0.x) * pow(1.0 - max(dot(w.normal, toEye), 0.0), 5.0);
+    float fresnel = f0.x + (1.0 - f0.x) * schlick(dot(w.normal, toEye));
     vec3 film = gloss(w.normal, toEye, f0, 0.14, 0.0, lightArriving, open);
     return mix(matte + shine, matte * (1.0 - fresnel) + shine * mix(0.35, 1.0 - fresnel, metallic) + film, w.film);
 }

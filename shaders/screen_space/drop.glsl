@@ -1,5 +1,6 @@
 // The light of a drop of water, from behind and from its surface. Needs frame.glsl and environment.glsl.
 #include "shaders/render/fog.glsl"
+#include "shaders/render/fresnel.glsl"
 #include "shaders/render/lights.glsl"
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;  // window depth
@@ -35,14 +36,14 @@ vec3 seenThrough(vec3 from, vec3 way, float depth, float closed) {
 // scene behind hides. In the fog of the scene.
 vec3 lightOfDrop(vec3 through, vec3 at, vec3 n, vec3 toEye, float closed) {
     float base = (refractiveIndex - 1.0) / (refractiveIndex + 1.0);
-    float mirror = mix(base * base, 1.0, pow(1.0 - max(dot(n, toEye), 0.0), 5.0));  // Schlick 1994
+    float mirror = mix(base * base, 1.0, schlick(dot(n, toEye)));
     vec3 way = reflect(-toEye, n), mirrored = environment(directionToWorld(way), 0.05);
     float passes = fogPasses(gl_FragCoord.xy, -at.z);
     vec3 behind = unfogged(texelFetch(sceneColour, ivec2(gl_FragCoord.xy), 0).rgb, passes);
     if (closed > 0.0) mirrored = mix(mirrored, behind, closed * smoothstep(0.0, 0.3, -dot(way, toEye)));
     vec3 light = mix(through, mirrored, mirror);
     for (int k = 0; k < lightCount(); ++k) {
-        vec3 half_ = normalize(toEye + transpose(mat3(frame.inverseView)) * lightTowards(k));
+        vec3 half_ = halfway(toEye, transpose(mat3(frame.inverseView)) * lightTowards(k));
         light += lightColour(k) * (0.6 * smoothstep(0.975, 0.995, dot(n, half_)) * lightShare(k, toWorld(at)));
     }
     return fogged(light, passes);

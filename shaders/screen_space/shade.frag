@@ -153,7 +153,7 @@ const float kFinest = 0.035, kMostGlint = 8.0;
 vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 towards, vec3 light) {
     float nl = dot(n, towards), nv = max(dot(n, toEye), 0.02);
     if (nl <= 0.0) return vec3(0.0);
-    vec3 h = normalize(toEye + towards);
+    vec3 h = halfway(toEye, towards);
     float nh = max(dot(n, h), 0.0), a = min(kFinest + 0.5 * length(turn), 0.5), a2 = a * a;
     float k = nh * nh * (a2 - 1.0) + 1.0;
     float lobe = a2 / (3.1415927 * k * k) * 0.5 / (mix(2.0 * nl * nv, nl + nv, a) + 1.0e-4) * nl;
@@ -284,7 +284,7 @@ void main() {
         above += light * (share * 0.25 * max(towards.y, 0.0));
         front += light * (share * 0.3183099 * max(0.85 * facing + 0.15, 0.0));
         rear += light * (share * 0.3183099 * max(-facing, 0.0));
-        float mirror = fresnel(max(dot(eyeWorld, normalize(eyeWorld + towards)), 0.02), refractiveIndex);
+        float mirror = fresnel(max(dot(eyeWorld, halfway(eyeWorld, towards)), 0.02), refractiveIndex);
         sun += glint(nWorld, eyeWorld, turn, mirror, towards, light * share);
     }
     sun *= smoothstep(0.0, 0.8 * radius, through);

@@ -2,6 +2,7 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/fog.glsl"
+#include "shaders/render/fresnel.glsl"
 #include "shaders/render/lights.glsl"
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;  // window depth
@@ -70,7 +71,7 @@ void main() {
     vec3 through = mix(ambient(directionToWorld(bent)), unfogged(textureLod(sceneColour, uv, 0.0).rgb, passes), seen);
     vec3 white = ambient(directionToWorld(n)), suns = vec3(0.0), glints = vec3(0.0);
     for (int k = 0; k < lightCount(); ++k) {
-        vec3 sun = lightColour(k) * (k == 0 ? lit : 1.0), half_ = normalize(toEye + transpose(mat3(frame.inverseView)) * lightTowards(k));
+        vec3 sun = lightColour(k) * (k == 0 ? lit : 1.0), half_ = halfway(toEye, transpose(mat3(frame.inverseView)) * lightTowards(k));
         white += sun * (0.3183099 * (0.5 + 0.5 * dot(directionToWorld(n), lightTowards(k))));
         // A highlight is drawn out along the path, and only of a drop of several pixels is it a spot of its own.
         glints += sun * (0.5 * smoothstep(0.92, 0.995, dot(n, half_)) * smoothstep(0.8, 4.0, radius / pixel) * bright);

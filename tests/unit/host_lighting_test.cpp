@@ -76,7 +76,8 @@ class LightOfAHost : public testing::PoolInAHost {
 };
 
 // Towards lights whose highlights are in the picture.
-const vec3 kSun(0.1F, 0.62F, -0.78F), kLow(0.35F, 0.5F, -0.8F), kLeft(-0.4F, 0.6F, -0.7F), kAbove(0.2F, 1.0F, 0.3F);
+const vec3 kSun(0.1F, 0.62F, -0.78F), kLow(0.35F, 0.5F, -0.8F), kLeft(-0.4F, 0.6F, -0.7F), kAbove(0.2F, 1.0F, 0.3F),
+    kBehind(-0.3F, 0.7F, 1.6F);
 
 // Radiance is linear: each light adds its own, whichever comes first.
 TEST_F(LightOfAHost, IsTheSumOfItsLights) {
@@ -244,22 +245,25 @@ TEST_F(LightOfAHost, IsShadedWhereTheShadowMapSays) {
     }
 }
 
-// In shade of the whole pool, nothing that is drawn has light of the sun: not foam, spray and drops either.
+// In shade of the whole pool, nothing that is drawn has light of the sun: not foam, spray and drops either. A sun before the eye gives
+// highlights, one behind it the glint of the far side of a drop that hangs.
 TEST_F(LightOfAHost, ReachesNothingInTheShade) {
     addMedia();
-    FrameView view = camera();
-    view.lightDirWorld = kSun;
-    const ShadowMap map = shadowMap(kSun, -10.0F, false, false, 64, GL_DEPTH_COMPONENT24, 1);
-    for (const char* name : {"screen_space", "points"}) {
-        SCOPED_TRACE(name);
-        const auto picture = [&](float sun, const HostShadow& shadow) {
-            view.lightColour = vec3(sun);
-            return draw("shade", view, {.shadow = shadow}, cloudy(), empty(vec3(0.1F)), renderers().find(name));
-        };
-        const std::vector<vec4> dark = picture(0, {});
-        EXPECT_NE(picture(1, {}), dark);
-        EXPECT_EQ(picture(1, map.shadow), dark);
-    }
+    for (const vec3& sun : {kSun, kBehind})
+        for (const char* name : {"screen_space", "points"}) {
+            SCOPED_TRACE(name);
+            FrameView view = camera();
+            view.lightDirWorld = sun;
+            const ShadowMap map = shadowMap(sun, -10.0F, false, false, 64, GL_DEPTH_COMPONENT24, 1);
+            const auto picture = [&](float light, const HostShadow& shadow) {
+                view.lightColour = vec3(light);
+                return draw(fmt::format("shade_{}_{}_{}", name, sun.z < 0 ? "before" : "behind", shadow.texture != 0 ? 2 : light).c_str(),
+                            view, {.shadow = shadow}, cloudy(), empty(vec3(0.1F)), renderers().find(name));
+            };
+            const std::vector<vec4> dark = picture(0, {});
+            EXPECT_NE(picture(1, {}), dark);
+            EXPECT_EQ(picture(1, map.shadow), dark);
+        }
 }
 
 // The picture's own fog, computed here. `passes`: the share of light that comes through.

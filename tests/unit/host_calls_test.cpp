@@ -3,77 +3,43 @@
 #include <rivulet_glad/gl.h>
 
 #include <cstdlib>
-#include <glm/gtc/type_ptr.hpp>
-#include <optional>
-#include <type_traits>
+#include <utility>
+#include <vector>
 
-#include "engine/app/context_egl.h"
 #include "engine/app/gl_count.h"
 #include "fluid/capi/rivulet.h"
+#include "tests/unit/c_host.h"
 #include "tests/unit/host_fixture.h"
-#include "tests/unit/host_water.h"
 
 namespace rivulet::host_calls_test {
 namespace {
 
 using testing::HostScene;
 
-constexpr const char* kScene = R"({"fluid": {"spacing": 0.04, "blocks": [{"min": [0.1, 0, 0.2], "max": [0.9, 0.4, 0.8]}]}})";
-
-class CallsOfAHost : public ::testing::Test {
+class CallsOfAHost : public testing::CHost {
   protected:
     void SetUp() override {
-        Result<ContextEgl> context = ContextEgl::create();
-        if (!context) {
-            ASSERT_TRUE(testing::mayLackOpenGl()) << context.error().message;
-            GTEST_SKIP() << context.error().message;
-        }
-        gl_.emplace(std::move(*context));
-        rivulet_context_options options{};
-        options.size = sizeof options;
-        options.find = countingFind;
-        options.backend = "cpu";
-        ASSERT_EQ(rivulet_context_create(&options, &context_, &why_), RIVULET_OK) << why_.message;
+        CHost::SetUp();
+        if (!context_) return;
+        makeContext(countingFind, rivulet_);
         for (rivulet_world*& world : worlds_) {
-            rivulet_world_options scene{};
-            scene.size = sizeof scene;
-            scene.json = kScene;
-            ASSERT_EQ(rivulet_world_create(context_, &scene, &world, &why_), RIVULET_OK) << why_.message;
+            makeWorld(rivulet_, world);
             step(world);
         }
     }
     void TearDown() override {
         for (rivulet_world* world : worlds_) rivulet_world_destroy(world);
-        rivulet_context_destroy(context_);
+        rivulet_context_destroy(rivulet_);
+        CHost::TearDown();
     }
     void step(rivulet_world* world) { EXPECT_EQ(rivulet_world_step(world, nullptr, 1.0 / 60, &why_), RIVULET_OK) << why_.message; }
-    // Of a world or a snapshot.
     template <class Drawn>
     void draw(Drawn* drawn, const HostScene& host, float aside = 0) {
-        FrameView v = host.view();
-        v.view[3].x += aside;
-        rivulet_view view{};
-        view.size = sizeof view;
-        view.view = glm::value_ptr(v.view);
-        view.projection = glm::value_ptr(v.projection);
-        view.near_plane = v.nearPlane;
-        view.far_plane = v.farPlane;
-        const HostTarget t = host.target();
-        rivulet_target target{};
-        target.size = sizeof target;
-        target.framebuffer = t.framebuffer;
-        target.width = t.width;
-        target.height = t.height;
-        if constexpr (std::is_same_v<Drawn, rivulet_world>)
-            EXPECT_EQ(rivulet_world_draw(drawn, &view, &target, &why_), RIVULET_OK) << why_.message;
-        else
-            EXPECT_EQ(rivulet_snapshot_draw(drawn, &view, &target, &why_), RIVULET_OK) << why_.message;
+        EXPECT_EQ(CHost::draw(drawn, host, aside), RIVULET_OK) << why_.message;
     }
 
-    std::optional<ContextEgl> gl_;
-    rivulet_context* context_ = nullptr;
+    rivulet_context* rivulet_ = nullptr;
     rivulet_world* worlds_[2] = {};
-    rivulet_error why_{};
 };
 
 size_t made(const GlCalls& calls) { return calls.of("glCreate") + calls.of("glGen"); }
@@ -141,7 +107,7 @@ TEST_F(CallsOfAHost, ASecondEyeBringsNothingOver) {
 TEST_F(CallsOfAHost, ASecondEyeOfASnapshotBringsNothingOver) {
     const HostScene left(160, 120), right(160, 120), eye(160, 120), plain(160, 120);
     rivulet_snapshot* snapshot = nullptr;
-    ASSERT_EQ(rivulet_snapshot_create(context_, &snapshot, &why_), RIVULET_OK) << why_.message;
+    ASSERT_EQ(rivulet_snapshot_create(rivulet_, &snapshot, &why_), RIVULET_OK) << why_.message;
     const auto copies = [](const GlCalls& calls) { return calls.of("glCopyNamedBufferSubData") + calls.of("glFenceSync"); };
     for (int frame = 0; frame < 3; ++frame) {
         step(worlds_[0]);
@@ -162,16 +128,9 @@ TEST_F(CallsOfAHost, AHostThatKnowsItsStateIsNotAsked) {
     const std::vector<vec4> picture = host.pixels();
     rivulet_context* context = nullptr;
     rivulet_world* world = nullptr;
-    rivulet_context_options options{};
-    options.size = sizeof options;
-    options.find = countingFind;
-    options.backend = "cpu";
-    options.plain_state = 1;
-    ASSERT_EQ(rivulet_context_create(&options, &context, &why_), RIVULET_OK) << why_.message;
-    rivulet_world_options scene{};
-    scene.size = sizeof scene;
-    scene.json = kScene;
-    ASSERT_EQ(rivulet_world_create(context, &scene, &world, &why_), RIVULET_OK) << why_.message;
+    makeContext(countingFind, context, true);
+    makeWorld(context, world);
+    ASSERT_FALSE(HasFatalFailure());
     step(world);
     const HostScene other(160, 120);
     for (int k = 0; k < 4; ++k) draw(world, other);

@@ -12,14 +12,13 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <vector>
 
-#include "engine/app/context_egl.h"
 #include "engine/gpu/buffer.h"
 #include "engine/render/frame_view.h"
 #include "fluid/render/water_renderer.h"
 #include "tests/unit/host_water.h"
+#include "tests/unit/opengl_test.h"
 
 namespace rivulet::testing {
 
@@ -84,27 +83,22 @@ class PoolPicture {
     GLuint framebuffer_ = 0;
 };
 
-class PoolInAHost : public ::testing::Test {
+class PoolInAHost : public OpenGlTest {
   protected:
     static constexpr int kWidth = PoolPicture::kWidth, kHeight = PoolPicture::kHeight;
     static constexpr float kSpacing = 0.05F, kHalf = 2.0F;  // m; half the side of the pool
     static constexpr int kLayers = 6;
 
     void SetUp() override {
-        Result<ContextEgl> context = ContextEgl::create();
-        if (!context) {
-            ASSERT_TRUE(mayLackOpenGl()) << context.error().message;
-            GTEST_SKIP() << context.error().message;
-        }
-        context_.emplace(std::move(*context));
+        OpenGlTest::SetUp();
+        if (!context_) return;
         fillPool({});
         auto renderer = WaterRenderer::create({});
         ASSERT_TRUE(renderer) << renderer.error().message;
         renderer_ = std::move(*renderer);
     }
     void TearDown() override {
-        if (!context_) return;
-        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+        OpenGlTest::TearDown();
         for (gpu::Buffer* buffer : {&position_, &velocity_, &id_}) *buffer = {};
         renderer_.reset();
     }
@@ -174,7 +168,6 @@ class PoolInAHost : public ::testing::Test {
         keepPicture(name, pixels, kWidth, kHeight);
     }
 
-    std::optional<ContextEgl> context_;
     std::unique_ptr<WaterRenderer> renderer_;
     gpu::Buffer position_, velocity_, id_;
     FluidView pool_;

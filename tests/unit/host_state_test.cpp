@@ -19,6 +19,7 @@
 #include "tests/unit/gl_snapshot.h"
 #include "tests/unit/host_fixture.h"
 #include "tests/unit/host_water.h"
+#include "tests/unit/opengl_test.h"
 
 namespace rivulet::host_state_test {
 namespace {

@@ -8,21 +8,17 @@
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "engine/app/capture.h"
-#include "engine/app/context_egl.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/render/fluid_view.h"
 #include "fluid/render/water_renderer.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/host_fixture.h"
+#include "tests/unit/opengl_test.h"
 
 namespace rivulet::testing {
-
-// Without OpenGL a test is skipped; with RIVULET_TEST_DEVICES, as tests/run.sh sets it, it fails.
-inline bool mayLackOpenGl() { return std::getenv("RIVULET_TEST_DEVICES") == nullptr; }
 
 // Writes colours of a screen, the bottom row first, to $RIVULET_PICTURES/NAME.png, for a person to look at.
 inline void keepPicture(const char* name, const std::vector<vec4>& pixels, int width, int height) {
@@ -63,16 +59,12 @@ inline FluidView viewOf(const FluidWorld& world) {
     return v;
 }
 
-class HostWater : public ::testing::Test {
+class HostWater : public OpenGlTest {
   protected:
     explicit HostWater(int frames) : frames_(frames) {}
     void SetUp() override {
-        Result<ContextEgl> context = ContextEgl::create();
-        if (!context) {
-            ASSERT_TRUE(mayLackOpenGl()) << context.error().message;
-            GTEST_SKIP() << context.error().message;
-        }
-        context_.emplace(std::move(*context));
+        OpenGlTest::SetUp();
+        if (!context_) return;
         device_ = makeGlDevice(ShaderFiles::developer());
         auto world = FluidWorld::create(*device_, hostWater(), {}, {});
         ASSERT_TRUE(world) << world.error().message;
@@ -84,16 +76,14 @@ class HostWater : public ::testing::Test {
         renderer_ = std::move(*renderer);
     }
     void TearDown() override {
-        if (!context_) return;
-        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
-        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+        OpenGlTest::TearDown();
+        if (context_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
         renderer_.reset();
         world_.reset();
         device_.reset();
     }
 
     int frames_;  // of 1/60 s that the water has fallen
-    std::optional<ContextEgl> context_;
     std::unique_ptr<Device> device_;
     std::unique_ptr<FluidWorld> world_;
     std::unique_ptr<WaterRenderer> renderer_;

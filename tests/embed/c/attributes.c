@@ -6,8 +6,6 @@
 #include "check.h"
 #include "host.h"
 
-static rivulet_error why;
-
 enum { WIDTH = 480, HEIGHT = 320, MOST = 8192 };
 static float positions[3 * MOST], origins[4 * MOST], dyes[4 * MOST], rows[4 * MOST], drawn[4 * MOST];
 static uint32_t ids[MOST], row_ids[MOST];
@@ -117,15 +115,7 @@ static void a_shader_reads_them(rivulet_world* world, const char* path) {
         "#version 450\nin vec3 dye; out vec4 colour; void main() {"
         "vec2 d = 2.0 * gl_PointCoord - 1.0; float r = dot(d, d); if (r > 1.0) discard;"
         "colour = vec4(dye * (0.4 + 0.6 * sqrt(1.0 - r)), 1.0); }"};
-    const GLuint program = glCreateProgram();
-    for (int k = 0; k < 2; ++k) {
-        const GLuint shader = glCreateShader(k == 0 ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER);
-        glShaderSource(shader, 1, &sources[k], NULL);
-        glCompileShader(shader);
-        glAttachShader(program, shader);
-        glDeleteShader(shader);
-    }
-    glLinkProgram(program);
+    const GLuint program = program_of(sources[0], sources[1]);
     GLuint array = 0;
     glGenVertexArrays(1, &array);
     glBindVertexArray(array);

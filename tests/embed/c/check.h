@@ -8,6 +8,7 @@
 #include <rivulet/rivulet.h>
 
 static int failures = 0;
+static rivulet_error why;
 
 #define CHECK(condition)                                                          \
     do {                                                                          \
@@ -33,5 +34,15 @@ static int failures = 0;
             printf("%s:%d: not refused with '%s': %s: %s\n", __FILE__, __LINE__, words, #call, why.message); \
         }                                                                                                    \
     } while (0)
+
+static inline rivulet_context* cpu_context(void) {
+    rivulet_context* context = NULL;
+    rivulet_context_options options;
+    memset(&options, 0, sizeof options);
+    options.size = sizeof options;
+    options.backend = "cpu";
+    DONE(rivulet_context_create(&options, &context, &why));
+    return context;
+}
 
 #endif

@@ -2,11 +2,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
-#include "check.h"
-
-static rivulet_error why;
+#include "pool.h"
 
 /* A plate across z, from (x0, y0) to (x0 + 0.4, y0 + 0.2) m, of 21 x 11 vertices. */
 enum { COLUMNS = 21, ROWS = 11, VERTICES = COLUMNS * ROWS, INDICES = 6 * (COLUMNS - 1) * (ROWS - 1) };
@@ -234,16 +231,14 @@ static void parts_as_lines(rivulet_context* context) {
 }
 
 static double height(rivulet_world* world, float* lowest) {
-    static float x[3 * 20000];
-    rivulet_particles p = {.size = sizeof p, .capacity = 20000, .positions = x};
-    DONE(rivulet_world_particles(world, &p, &why));
+    const size_t count = count_of(world);
     double sum = 0;
     *lowest = 1e9F;
-    for (size_t k = 0; k < p.count; ++k) {
-        sum += x[3 * k + 1];
-        *lowest = fminf(*lowest, x[3 * k + 1]);
+    for (size_t k = 0; k < count; ++k) {
+        sum += positions[3 * k + 1];
+        *lowest = fminf(*lowest, positions[3 * k + 1]);
     }
-    return sum / (double)p.count;
+    return sum / (double)count;
 }
 
 /* A floor that deforms carries water: raised by 0.1 m, its middle first, it lifts the water by as much. */
@@ -309,27 +304,23 @@ static void a_floor_that_deforms_lifts_water(rivulet_context* context) {
     DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
     CHECK(fabs(height(world, &low) - 0.18) < 0.01);
     uint32_t id = 0;
-    const struct timespec pause = {0, 1000000};
     int32_t state = RIVULET_WALL_BAKES;
     DONE(rivulet_world_add_wall(world, &floor, &id, &why));
     CHECK(id == 1);
     while (state == RIVULET_WALL_BAKES) {
-        nanosleep(&pause, NULL);
-        DONE(rivulet_world_step(world, NULL, 0, &why));
+        wait_a_little(world, 0);
         DONE(rivulet_world_wall(world, id, &state, &why));
     }
     CHECK(state == RIVULET_WALL_ACTS);
     DONE(rivulet_world_remove_wall(world, id, &why));
     DONE(rivulet_world_remove_wall(world, 0, &why));
-    for (int frame = 0; frame < 60; ++frame) DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+    run(world, 60);
     CHECK(height(world, &low) < 0.13 && low < 0.03F); /* on the box's floor: 0.08 when at rest */
     rivulet_world_destroy(world);
 }
 
 int main(void) {
-    rivulet_context* context = NULL;
-    const rivulet_context_options options = {.size = sizeof options, .backend = "cpu"};
-    DONE(rivulet_context_create(&options, &context, &why));
+    rivulet_context* context = cpu_context();
     falls_into_water(context);
     picks_on_the_bent_mesh(context);
     floats_and_later_answers(context);

@@ -6,8 +6,6 @@
 
 #include "check.h"
 
-static rivulet_error why;
-
 static rivulet_context* make_context(size_t memory_limit) {
     rivulet_context* context = NULL;
     const rivulet_context_options o = {.size = sizeof o, .backend = "cpu", .memory_limit = memory_limit};

@@ -5,8 +5,6 @@
 #include "check.h"
 #include "host.h"
 
-static rivulet_error why;
-
 enum { WIDTH = 96, HEIGHT = 72 };
 static unsigned char dry[4 * WIDTH * HEIGHT], wet[4 * WIDTH * HEIGHT];
 

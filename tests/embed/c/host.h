@@ -30,4 +30,18 @@ static GLuint make_target(GLsizei width, GLsizei height) {
     return framebuffer;
 }
 
+static inline GLuint program_of(const char* vertex, const char* fragment) {
+    const char* texts[2] = {vertex, fragment};
+    const GLuint program = glCreateProgram();
+    for (int k = 0; k < 2; ++k) {
+        const GLuint shader = glCreateShader(k == 0 ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER);
+        glShaderSource(shader, 1, &texts[k], NULL);
+        glCompileShader(shader);
+        glAttachShader(program, shader);
+        glDeleteShader(shader);
+    }
+    glLinkProgram(program);
+    return program;
+}
+
 #endif

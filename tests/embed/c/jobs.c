@@ -5,8 +5,6 @@
 
 #include "check.h"
 
-static rivulet_error why;
-
 /* A host whose jobs are threads, the last one first. */
 struct host {
     int loops, most;

@@ -5,7 +5,6 @@
 #include "check.h"
 #include "host.h"
 
-static rivulet_error why;
 static int gone, late, said;
 
 /* OpenGL's functions that delete, which report calls after the end of their context. */

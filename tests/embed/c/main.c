@@ -5,8 +5,6 @@
 
 #include "check.h"
 
-static rivulet_error why;
-
 #define MOST 40000
 
 typedef struct cloud {

@@ -10,7 +10,6 @@
 enum { WIDTH = 96, HEIGHT = 72, FRAMES = 30 };
 typedef unsigned char picture[4 * WIDTH * HEIGHT];
 
-static rivulet_error why;
 static const char* kScene =
     "{\"fluid\": {\"spacing\": 0.04, \"blocks\": [{\"max\": [0.4, 0.6, 1]}], \"foam\": {\"most\": 500}}, \"look\": {\"quality\": "
     "\"fine\"}}";

@@ -7,7 +7,6 @@
 
 enum { WIDTH = 96, HEIGHT = 72, BYTES = 4 * WIDTH * HEIGHT };
 
-static rivulet_error why;
 static rivulet_world* world;
 static rivulet_snapshot* snapshot;
 static rivulet_view from;
@@ -155,19 +154,7 @@ typedef struct painter {
     GLuint plane, points, array;
 } painter;
 
-static GLuint program_of(const char* vertex) {
-    const char* texts[2] = {vertex, "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(0, 1, 0, 1); }"};
-    const GLuint program = glCreateProgram();
-    for (int k = 0; k < 2; ++k) {
-        const GLuint shader = glCreateShader(k == 0 ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER);
-        glShaderSource(shader, 1, &texts[k], NULL);
-        glCompileShader(shader);
-        glAttachShader(program, shader);
-        glDeleteShader(shader);
-    }
-    glLinkProgram(program);
-    return program;
-}
+static const char* const kGreen = "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(0, 1, 0, 1); }";
 
 static void paint(void* user, const rivulet_drawing* drawing) {
     painter* p = user;
@@ -252,11 +239,13 @@ static int is_green(const unsigned char* p) { return p[0] == 0 && p[1] == 255 &&
 
 static void a_hosts_renderer_draws(unsigned char* a, unsigned char* b) {
     painter p = {.plane = program_of("#version 450\nlayout(location = 0) uniform float z;"
-                                     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, z, 1); }"),
+                                     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, z, 1); }",
+                                     kGreen),
                  .points = program_of("#version 450\nlayout(location = 0) uniform mat4 view; layout(location = 1) uniform mat4 projection;"
                                       "layout(std430, binding = 0) readonly buffer At { vec4 at[]; };"
                                       "void main() { vec4 p = at[gl_VertexID];"
-                                      "gl_Position = p.w < 0 ? vec4(2, 2, 2, 1) : projection * view * vec4(p.xyz, 1); }")};
+                                      "gl_Position = p.w < 0 ? vec4(2, 2, 2, 1) : projection * view * vec4(p.xyz, 1); }",
+                                      kGreen)};
     glGenVertexArrays(1, &p.array);
     rivulet_renderer renderer = {.size = sizeof renderer, .stage = RIVULET_INSTEAD, .draw = paint, .user = &p};
     picture(a, NULL); /* Rivulet's own */

@@ -13,7 +13,6 @@
 
 namespace {
 
-rivulet_error why;
 bool throws = false;
 int logged = 0;
 

@@ -7,8 +7,6 @@
 #include "check.h"
 #include "host.h"
 
-static rivulet_error why;
-
 /* Whether a part of the library is still mapped. */
 static int mapped(const char* library) {
     char line[4096];

@@ -2,21 +2,13 @@
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
-#include "check.h"
-
-static rivulet_error why;
-
-enum { MOST = 20000 };
-static float positions[3 * MOST];
+#include "pool.h"
 
 /* A box of 12 triangles. */
 struct box {
     float corners[24];
 };
-static const uint32_t kTriangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
 static rivulet_mesh box_of(struct box* box, const float low[3], const float high[3]) {
     for (int k = 0; k < 8; ++k)
         for (int axis = 0; axis < 3; ++axis) box->corners[3 * k + axis] = (k >> axis & 1) != 0 ? high[axis] : low[axis];
@@ -29,18 +21,10 @@ static rivulet_mesh box_of(struct box* box, const float low[3], const float high
                           .restitution = -1};
 }
 
-static size_t count_of(rivulet_world* world) {
-    rivulet_particles all = {.size = sizeof all, .capacity = MOST, .positions = positions};
-    DONE(rivulet_world_particles(world, &all, &why));
-    return all.count;
-}
 static float farthest(rivulet_world* world) {
     float x = 0;
     for (size_t k = 0, n = count_of(world); k < n; ++k) x = positions[3 * k] > x ? positions[3 * k] : x;
     return x;
-}
-static void run(rivulet_world* world, int frames) {
-    for (int k = 0; k < frames; ++k) DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
 }
 static int state_of(const rivulet_world* world, uint32_t id) {
     int32_t state = -1;
@@ -48,11 +32,9 @@ static int state_of(const rivulet_world* world, uint32_t id) {
     return state;
 }
 static void wait_for_bake(const rivulet_world* world, uint32_t id) {
-    const struct timespec pause = {0, 1000000};
     rivulet_world* stepped = (rivulet_world*)world;
     while (state_of(world, id) == RIVULET_WALL_BAKES) {
-        nanosleep(&pause, NULL);
-        DONE(rivulet_world_step(stepped, NULL, 1.0e-6, &why)); /* it acts from the step on before which its bake ended */
+        wait_a_little(stepped, 1.0e-6); /* it acts from the step on before which its bake ended */
     }
 }
 
@@ -90,11 +72,9 @@ static void gates_open_and_close(rivulet_context* context, int moves, int both) 
     DONE(rivulet_world_remove_wall(world, 0, &why));
     int32_t state = 0;
     if (!moves && both) { /* until the post is baked alone */
-        for (int tries = 0; tries < 1000 && rivulet_world_wall(world, 0, &state, NULL) == RIVULET_OK; ++tries) {
-            const struct timespec pause = {0, 5000000};
+        for (int tries = 0; tries < 5000 && rivulet_world_wall(world, 0, &state, NULL) == RIVULET_OK; ++tries) {
             CHECK(state == RIVULET_WALL_LEAVES);
-            nanosleep(&pause, NULL);
-            DONE(rivulet_world_step(world, NULL, 1.0e-6, &why));
+            wait_a_little(world, 1.0e-6);
         }
     }
     REFUSED(rivulet_world_wall(world, 0, &state, &why), "no wall 0");
@@ -358,9 +338,7 @@ static void run_here(void* user, void (*function)(void* argument, size_t k), voi
 }
 
 int main(void) {
-    rivulet_context* context = NULL;
-    rivulet_context_options o = {.size = sizeof o, .backend = "cpu"};
-    DONE(rivulet_context_create(&o, &context, &why));
+    rivulet_context* context = cpu_context();
     gates_open_and_close(context, 1, 0);
     gates_open_and_close(context, 0, 0);
     gates_open_and_close(context, 0, 1);
@@ -374,7 +352,7 @@ int main(void) {
     rivulet_context_destroy(context);
     int started = 0;
     const rivulet_jobs jobs = {.size = sizeof jobs, .user = &started, .run = run_here, .workers = 1, .start = start_now};
-    o.jobs = &jobs;
+    const rivulet_context_options o = {.size = sizeof o, .backend = "cpu", .jobs = &jobs};
     DONE(rivulet_context_create(&o, &context, &why));
     gates_open_and_close(context, 1, 0);
     CHECK(started == 1);

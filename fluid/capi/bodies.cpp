@@ -66,8 +66,8 @@ Result<Bodies::Read> Bodies::read(const rivulet_body& given, const std::string& 
             fmt::format("{}.density is {} kg/m^3: give {} to {}, or samples and a mass", name, b.density, kLeastDensity, kMostDensity));
     if (!sampled && (b.mass != 0 || b.volume != 0 || isSet(b.inertia)))
         return badInput(
-            fmt::format("{} has a mesh without samples, whose mass, inertia and volume are found from its density: set them to 0, or give "
-                        "samples",
+            fmt::format("{} has a mesh and no samples: its mass, inertia and volume are computed from the mesh and its density; set mass, "
+                        "inertia and volume to 0, or give samples",
                         name));
     if (sampled && b.density != 0) return badInput(fmt::format("{} has samples and a density: give one of them", name));
     Read read;

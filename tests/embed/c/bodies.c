@@ -1,20 +1,12 @@
 /* Bodies that come and go while a world runs. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
-#include <time.h>
 
-#include "check.h"
-
-static rivulet_error why;
-
-enum { MOST = 20000 };
-static float positions[3 * MOST];
+#include "pool.h"
 
 /* A box of 12 triangles about a centre that is not the origin of its frame. */
 static const float kCentre[3] = {0.02F, -0.01F, 0.03F};
 static float corners[24];
-static const uint32_t kTriangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
 static rivulet_mesh box_of(float width, float height) {
     for (int k = 0; k < 8; ++k)
         for (int axis = 0; axis < 3; ++axis)
@@ -38,22 +30,12 @@ static rivulet_world* pool(rivulet_context* context, const char* more, const riv
     DONE(rivulet_world_create(context, &o, &world, &why));
     return world;
 }
-static void run(rivulet_world* world, int frames) {
-    for (int k = 0; k < frames; ++k) DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
-}
-static size_t count_of(rivulet_world* world) {
-    rivulet_particles all = {.size = sizeof all, .capacity = MOST, .positions = positions};
-    DONE(rivulet_world_particles(world, &all, &why));
-    return all.count;
-}
 static void wait_for(rivulet_world* world, uint32_t id) {
-    const struct timespec pause = {0, 1000000};
     int32_t inside = 0;
     for (;;) {
         DONE(rivulet_world_body(world, id, &inside, NULL, NULL, &why));
         if (inside) return;
-        nanosleep(&pause, NULL);
-        DONE(rivulet_world_step(world, NULL, 0, &why)); /* it arrives, and no time passes */
+        wait_a_little(world, 0); /* it arrives, and no time passes */
     }
 }
 
@@ -150,7 +132,7 @@ static void water_makes_room(rivulet_context* context) {
     DONE(rivulet_world_add_body(world, &crate, &id, &why));
     wait_for(world, id);
     const double gone = (double)(before - count_of(world)) * 0.025 * 0.025 * 0.025, volume = 0.2 * 0.2 * 0.1;
-    CHECK(fabs(gone - volume) < 0.25 * volume);
+    CHECK(fabs(gone - volume) < 0.25 * volume); /* each face within a quarter of a spacing */
     rivulet_world_destroy(world);
 }
 
@@ -243,7 +225,7 @@ static void what_cannot_be_is_refused(rivulet_context* context) {
     REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "density");
     wrong = good;
     wrong.mass = 7;
-    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "mass, inertia and volume are found from its density");
+    REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "computed from the mesh and its density");
     wrong = good;
     wrong.spin[2] = NAN;
     REFUSED(rivulet_world_add_body(world, &wrong, &id, &why), "velocity or spin");
@@ -271,12 +253,10 @@ static void what_cannot_be_is_refused(rivulet_context* context) {
     /* A mesh that is open is found out while it is made ready. */
     mesh.indices_count = 3;
     DONE(rivulet_world_add_body(world, &good, &id, &why));
-    const struct timespec pause = {0, 1000000};
     rivulet_status status = RIVULET_OK;
     int32_t inside = 0;
     for (int k = 0; k < 5000 && status == RIVULET_OK; ++k) {
-        nanosleep(&pause, NULL);
-        DONE(rivulet_world_step(world, NULL, 0, &why));
+        wait_a_little(world, 0);
         status = rivulet_world_body(world, id, &inside, NULL, NULL, &why);
     }
     CHECK(status == RIVULET_FAILED && strstr(why.message, "volume") != NULL);
@@ -287,9 +267,7 @@ static void what_cannot_be_is_refused(rivulet_context* context) {
 }
 
 int main(void) {
-    rivulet_context* context = NULL;
-    const rivulet_context_options o = {.size = sizeof o, .backend = "cpu"};
-    DONE(rivulet_context_create(&o, &context, &why));
+    rivulet_context* context = cpu_context();
     a_crate_floats(context);
     many_come_and_go(context);
     water_makes_room(context);

@@ -59,7 +59,7 @@ TEST_P(DryParity, RemovesAsOnTheCpu) {
     const double a = removed(*cpu), b = removed(*gpu->device);
     std::printf("removed %.0f on cpu, %.0f on %s\n", a, b, GetParam());
     EXPECT_GT(a, 100);
-    EXPECT_NEAR(b, a, 0.1 * a);
+    EXPECT_NEAR(b, a, 5) << "rounding takes a few across a border a frame earlier or later";
 }
 INSTANTIATE_TEST_SUITE_P(Devices, DryParity, testing::Values("gl", "cl"), [](const auto& row) { return std::string(row.param); });
 

@@ -29,6 +29,7 @@ for compiler in "$@"; do
             -DCMAKE_POSITION_INDEPENDENT_CODE=ON
         options+=(-DCMAKE_PREFIX_PATH="/$compiler")
     fi
+    inside rm -rf "$build"  # ccache keeps what is unchanged; times of files may be those of another tree
     say "$compiler: $(inside "${cxx%% *}" --version | head -n 1)"
     inside cmake -S /src -B "$build" -G Ninja -DCMAKE_TOOLCHAIN_FILE="/$compiler.cmake" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= -DCMAKE_{C,CXX}_COMPILER_LAUNCHER=ccache \
         -DCMAKE_INSTALL_PREFIX="/prefix-$compiler" -DRIVULET_PROGRAM=OFF -DRIVULET_TESTS=OFF -DRIVULET_WERROR=ON "${options[@]}" \

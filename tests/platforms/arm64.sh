@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # arm64: the library and rivulet.h, cross-built in a chroot of Debian 13; then a host in C steps water on the cpu under qemu-user.
-#   bash tests/platforms/arm64.sh
+#   bash tests/platforms/arm64.sh [tests]      tests: also builds the programs of tests, and runs the fast ones of unit and physics
 set -u
 . "$(dirname "${BASH_SOURCE[0]}")/chroot.sh"
 system_of trixie arm64
@@ -12,9 +12,16 @@ set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L /)
 END
 inside bash -c 'export PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig && cmake -S /src -B /build-arm64 -G Ninja \
         -DCMAKE_TOOLCHAIN_FILE=/arm64.cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/arm64 -DRIVULET_PROGRAM=OFF -DRIVULET_TESTS=OFF &&
     cmake --build /build-arm64 && cmake --install /build-arm64' || fail "the build for arm64 failed."
 inside bash -c 'cd /tmp && aarch64-linux-gnu-gcc -std=c11 -O1 -Wall -Wextra -I/arm64/include /src/tests/platforms/fall.c -L/arm64/lib -lrivulet -lm \
         -Wl,-rpath,/arm64/lib -o fall.arm64 && qemu-aarch64 -L / ./fall.arm64' || fail "the host failed."
+[ "${1:-}" = tests ] || exit 0
+packages {libglfw3,libegl,libgl,libimgui,libassimp,libbullet,libgtest}-dev:arm64 libcli11-dev opencl-headers {libegl-mesa0,libgl1-mesa-dri}:arm64
+inside bash -c 'export PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig && cmake -S /src -B /build-arm64-tests -G Ninja \
+        -DCMAKE_TOOLCHAIN_FILE=/arm64.cmake -DCMAKE_BUILD_TYPE=Release -DRIVULET_TESTS=ON &&
+    cmake --build /build-arm64-tests --target test_unit test_physics' || fail "the tests were not built for arm64."
+inside ctest --test-dir /build-arm64-tests -R '^(unit|physics)\.' -L fast --timeout 1200 || fail "a test failed."

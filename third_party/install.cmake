@@ -42,7 +42,8 @@ endforeach()
 
 install(FILES LICENSE docs/parameters.md docs/embedding.md docs/api.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/rivulet)
 install(FILES third_party/README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/rivulet RENAME third_party.md)  # dependencies and their licences
-install(FILES fluid/capi/rivulet.py DESTINATION ${CMAKE_INSTALL_DATADIR}/rivulet/python)
+install(DIRECTORY fluid/python/rivulet DESTINATION ${CMAKE_INSTALL_DATADIR}/rivulet/python FILES_MATCHING PATTERN "*.py" PATTERN py.typed
+    PATTERN __pycache__ EXCLUDE)
 if(RIVULET_PROGRAM)
     install(TARGETS rivulet rivulet_import RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
     install(DIRECTORY assets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rivulet/assets PATTERN make_head EXCLUDE)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh BUILD: rivulet.py from an install prefix, which finds its library by itself; and the example that plots a dam break, whose front must
+# run.sh BUILD: the package rivulet from an install prefix, which finds its library by itself; and the example that plots a dam break, whose front must
 # be that of inviscid flow (within 5 %), as fast as what was measured in 1952 (within 5 %). Exit 77: NumPy or Matplotlib is not installed.
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -14,7 +14,7 @@ export RIVULET_EXPECTED="$(sed -n 's/^project(rivulet VERSION \([0-9.]*\).*/\1/p
 /usr/bin/python3 "$here/test.py" "$work"
 # What README shows, and what the module says of itself.
 sed -n '/^```python$/,/^```$/p' "$root/README.md" | grep -v '^```' >"$work/readme.py"
-sed -n '/^    import rivulet$/,/^$/p' "$root/fluid/capi/rivulet.py" | sed 's/^    //' >"$work/itself.py"
+sed -n '/^    import rivulet$/,/^$/p' "$root/fluid/python/rivulet/__init__.py" | sed 's/^    //' >"$work/itself.py"
 for snippet in readme itself; do
     [ -s "$work/$snippet.py" ] || { echo "there is no snippet of Python to be run: $snippet"; exit 1; }
     /usr/bin/python3 "$work/$snippet.py"

@@ -1,4 +1,4 @@
-"""test.py FOLDER: rivulet.py as an installed module: arrays, errors, callbacks, files; against what is known of falling water."""
+"""test.py FOLDER: rivulet as an installed package: arrays, errors, callbacks, files; against what is known of falling water."""
 import copy
 import gc
 import os

@@ -138,10 +138,10 @@ Particles.__doc__ = "positions (n, 3) m, velocities (n, 3) m/s, densities (n,) o
 
 
 def _load():
-    here = os.path.dirname(os.path.abspath(__file__))
+    here, prefix = os.path.dirname(os.path.abspath(__file__)), ("..",) * 4  # of share/rivulet/python/rivulet
     places = [os.environ.get("RIVULET_LIBRARY")]
-    places += [os.path.join(here, *up, "librivulet.so") for up in ((), ("..", "lib"), ("..", "..", "..", "lib"), ("..", "..", "..", "lib64"))]
-    places += sorted(glob.glob(os.path.join(here, "..", "..", "..", "lib", "*", "librivulet.so")))  # lib/x86_64-linux-gnu
+    places += [os.path.join(here, *up, "librivulet.so") for up in ((), ("..", "..", "lib"), (*prefix, "lib"), (*prefix, "lib64"))]
+    places += sorted(glob.glob(os.path.join(here, *prefix, "lib", "*", "librivulet.so")))  # lib/x86_64-linux-gnu
     for place in filter(None, places):
         if os.path.exists(place):
             return ctypes.CDLL(place)

@@ -1,0 +1,92 @@
+"""The structs of rivulet.h for ctypes, member by member, and those without `size` as types of NumPy."""
+import ctypes
+from ctypes import POINTER, Structure, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+
+import numpy as np
+
+LOG = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p)
+
+
+class Why(Structure):
+    _fields_ = [("message", ctypes.c_char * 1024)]
+
+
+class ContextOptions(Structure):
+    _fields_ = [("size", c_size_t), ("find", c_void_p), ("backend", c_char_p), ("device", c_char_p), ("log", LOG), ("log_user", c_void_p),
+                ("memory_limit", c_size_t), ("sky_horizon", c_float * 3), ("sky_zenith", c_float * 3), ("sky_sun", c_float * 3),
+                ("clouds", c_float), ("threads", c_int32), ("jobs", c_void_p), ("memory", c_void_p)]
+
+
+class Mesh(Structure):
+    _fields_ = [("size", c_size_t), ("positions", c_void_p), ("vertices", c_size_t), ("indices", c_void_p), ("indices_count", c_size_t),
+                ("uvs", c_void_p), ("friction", c_float), ("restitution", c_float), ("moves", c_uint32), ("resolution", c_int32),
+                ("position", c_float * 3), ("rotation", c_float * 4), ("reach_low", c_float * 3), ("reach_high", c_float * 3),
+                ("layers", c_uint32), ("meets", c_uint32)]
+
+
+class Body(Structure):
+    _fields_ = [("size", c_size_t), ("samples", c_void_p), ("samples_count", c_size_t), ("mass", c_float), ("inertia", c_float * 3),
+                ("volume", c_float), ("position", c_float * 3), ("rotation", c_float * 4), ("mesh", POINTER(Mesh)), ("density", c_float),
+                ("velocity", c_float * 3), ("spin", c_float * 3), ("layers", c_uint32), ("meets", c_uint32)]
+
+
+POSE = np.dtype([("position", np.float32, 3), ("rotation", np.float32, 4)])
+STATE = np.dtype(POSE.descr + [("velocity", np.float32, 3), ("spin", np.float32, 3)])
+LOAD = np.dtype([("force", np.float64, 3), ("torque", np.float64, 3)])
+ADVANCE = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, POINTER(c_float * 3), c_double, c_void_p, c_size_t)
+RESET = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, c_size_t)
+
+
+SAMPLE = np.dtype([("density", np.float32), ("velocity", np.float32, 3), ("gradient", np.float32, 3)])
+RAY = np.dtype([("origin", np.float32, 3), ("direction", np.float32, 3), ("reach", np.float32)])
+HIT = np.dtype([("hit", np.uint32), ("inside", np.uint32), ("distance", np.float32), ("place", np.float32, 3), ("normal", np.float32, 3),
+                 ("velocity", np.float32, 3)])
+HIT_RESULT = np.dtype([("hit", bool), ("inside", bool)] + HIT.descr[2:])
+VOLUME = np.dtype([("id", np.uint32), ("shape", np.int32), ("position", np.float32, 3), ("size", np.float32, 3), ("radius", np.float32)])
+COUNT = np.dtype([("id", np.uint32), ("entered", np.uint64), ("left", np.uint64), ("inside", np.uint64), ("time", np.float64),
+                   ("volume_inside", np.float64)], align=True)
+MOST_VOLUMES = 32
+LOADS = np.dtype([("name", "S64"), ("time", np.float64), ("seconds", np.float64), ("force", np.float64, 3), ("torque", np.float64, 3),
+                   ("pressure", np.float64), ("impulse", np.float64, 3), ("angular_impulse", np.float64, 3)])
+
+
+class BodyHost(Structure):
+    _fields_ = [("size", c_size_t), ("user", c_void_p), ("advance", ADVANCE), ("reset", RESET), ("added", c_void_p), ("removed", c_void_p)]
+
+
+class WorldOptions(Structure):
+    _fields_ = [("size", c_size_t), ("json", c_char_p), ("walls", POINTER(Mesh)), ("walls_count", c_size_t), ("bodies", POINTER(Body)),
+                ("bodies_count", c_size_t), ("body_host", POINTER(BodyHost)), ("particles", c_void_p), ("particle_velocities", c_void_p),
+                ("particles_count", c_size_t)]
+
+
+class Inputs(Structure):
+    _fields_ = [("size", c_size_t), ("gravity", c_void_p), ("poses", c_void_p), ("poses_count", c_size_t)]
+
+
+class Stats(Structure):
+    _fields_ = [("size", c_size_t), ("time", c_double), ("dropped", c_double), ("particles", c_uint32), ("lost", c_uint32), ("average_compression", c_double),
+                ("kinetic", c_double), ("potential", c_double), ("maximum_speed", c_double), ("centre_of_mass", c_double * 3),
+                ("substeps", c_int32), ("asleep", c_uint32)]
+
+
+class PassTime(Structure):
+    _fields_ = [("name", ctypes.c_char * 64), ("ms", c_double), ("calls", ctypes.c_int32)]
+
+
+class Particles(Structure):
+    _fields_ = [("size", c_size_t), ("capacity", c_size_t), ("positions", c_void_p), ("velocities", c_void_p), ("densities", c_void_p),
+                ("ids", c_void_p), ("count", c_size_t), ("attributes", c_void_p * 4)]
+
+
+class SkinOptions(Structure):
+    _fields_ = [("size", c_size_t), ("mesh", POINTER(Mesh)), ("json", c_char_p), ("map_size", c_int32)]
+
+
+class SkinInputs(Structure):
+    _fields_ = [("size", c_size_t), ("gravity", c_void_p), ("wind", c_void_p), ("to_world", c_void_p), ("positions", c_void_p)]
+
+
+class SkinStats(Structure):
+    _fields_ = [("size", c_size_t), ("drops", c_uint64), ("added", c_double), ("on_skin", c_double), ("left", c_double), ("evaporated", c_double),
+                ("refused", c_double)]

@@ -1,4 +1,4 @@
-// rivulet.h: volumes, and attributes of particles.
+// rivulet.h: volumes, attributes of particles, and particles where the cpu has them.
 #include <fmt/format.h>
 
 #include <span>
@@ -6,6 +6,7 @@
 
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 
 namespace rivulet::capi {
 
@@ -42,5 +43,24 @@ rivulet_status rivulet_world_paint(rivulet_world* world, uint32_t attribute, con
         const Result<Volume> inside = volumeOf(*volume, "volume");
         if (!inside) return inside.error();
         return world->world->paint(attribute, *inside, vec4(value[0], value[1], value[2], value[3]));
+    });
+}
+
+rivulet_status rivulet_world_rows(const rivulet_world* world, rivulet_rows* rows, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        if (world->world->device().backend() != Backend::cpu)
+            return badInput("the particles are in the memory of a GPU: copy them with rivulet_world_particles, or use backend cpu");
+        const auto memory = [](const Buffer* buffer) {
+            return buffer == nullptr ? nullptr : reinterpret_cast<const void*>(buffer->handle());
+        };
+        const ParticleView view = world->world->particles();
+        rivulet_rows full{.size = 0,
+                          .count = view.count == 0 ? 0 : view.slots,
+                          .positions = static_cast<const float*>(memory(view.position)),
+                          .velocities = static_cast<const float*>(memory(view.velocity)),
+                          .ids = static_cast<const uint32_t*>(memory(view.id)),
+                          .attributes = {}};
+        for (size_t k = 0; k < view.attributes.size(); ++k) full.attributes[k] = static_cast<const float*>(memory(view.attributes[k]));
+        return writeStruct(full, rows, "rivulet_rows", "rows");
     });
 }

@@ -93,6 +93,19 @@ RIVULET_API rivulet_status rivulet_world_set_attribute(rivulet_world* world, uin
 RIVULET_API rivulet_status rivulet_world_paint(rivulet_world* world, uint32_t attribute, const rivulet_volume* volume, const float* value,
                                                rivulet_error* why);
 
+/* The particles in the memory of backend cpu, without a copy, for reading. RIVULET_BAD_INPUT: another backend; use
+   rivulet_world_particles. The memory stays until the world is destroyed; after the next step, reset or restore, which move particles to
+   other rows and the newest state to other memory, call again. */
+typedef struct rivulet_rows {
+    size_t size;
+    size_t count;            /* rows of each array */
+    const float* positions;  /* 4 each: xyz m, w density over the rest density; negative w: the row holds no particle */
+    const float* velocities; /* 4 each: xyz m/s; w unused */
+    const uint32_t* ids;
+    const float* attributes[RIVULET_ATTRIBUTES]; /* 4 each: the values of fluid.attributes; NULL beyond them */
+} rivulet_rows;
+RIVULET_API rivulet_status rivulet_world_rows(const rivulet_world* world, rivulet_rows* rows, rivulet_error* why);
+
 /* What fluid.probes measured: the load of the fluid on walls and bodies, in world axes. Means are over the last frame that has arrived; on
    a GPU two or three frames ago. Probes are part of the world's json, or set with rivulet_world_set while their number stays. Their `on` is
    box, body or collider; collider k is walls[k]. */

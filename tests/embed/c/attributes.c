@@ -46,6 +46,17 @@ static size_t values_stay(rivulet_world* world) {
     DONE(rivulet_world_paint(world, 1, &ball, (const float[4]){1, 0, 0, 1}, &why));
     for (int k = 0; k < 30; ++k) DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
     CHECK(read_all(world) == count);
+    /* Without a copy: the same particles in the same order, but for rows that hold none. */
+    rivulet_rows memory = {.size = sizeof memory};
+    DONE(rivulet_world_rows(world, &memory, &why));
+    size_t seen = 0;
+    for (size_t k = 0; k < memory.count; ++k) {
+        if (memory.positions[4 * k + 3] < 0) continue;
+        CHECK(memory.ids[k] == ids[seen] && memcmp(memory.positions + 4 * k, positions + 3 * seen, 3 * sizeof(float)) == 0);
+        CHECK(memcmp(memory.attributes[0] + 4 * k, origins + 4 * seen, 4 * sizeof(float)) == 0 && memory.attributes[2] == NULL);
+        ++seen;
+    }
+    CHECK(seen == count);
     int red = 0;
     for (size_t k = 0; k < count; ++k) {
         const float dx = origins[4 * k] - 0.2F, dy = origins[4 * k + 1] - 0.2F, dz = origins[4 * k + 2] - 0.125F;

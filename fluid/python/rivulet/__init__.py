@@ -9,7 +9,8 @@
 
 A scene is a dict or a JSON text: the fluid, emitters, sinks and look of a scene file; docs/parameters.md lists all keys. A call that fails
 raises Error; a wrong argument raises BadInput, which is also a ValueError. Both say what is wrong, where, and the remedy. One thread at a time
-uses a context and what is made from it. Drawing needs a host with an OpenGL context: it calls rivulet.h.
+uses a context and what is made from it; other threads of Python run during its calls. A matrix is (4, 4) for columns, as mathematics writes
+it. docs/python.md is a tutorial.
 
 librivulet.so is searched in the environment variable RIVULET_LIBRARY, beside this file, in the prefix where this file is installed, and where
 the linker searches.
@@ -17,8 +18,11 @@ the linker searches.
 
 from ._library import BadInput, Error, version
 from .context import Context
-from .parts import Body, Box, Mesh, Particles, Sphere
+from .draw import Camera, Fog, Light, Picture, Shadow, Target, View
+from .parts import Air, Body, Box, Float, Mesh, Particles, SkinStats, Sphere, Stats
 from .skin import Skin
+from .snapshot import Recorded, Recording, Snapshot
 from .world import World
 
-__all__ = ["BadInput", "Body", "Box", "Context", "Error", "Mesh", "Particles", "Skin", "Sphere", "World", "version"]
+__all__ = ["Air", "BadInput", "Body", "Box", "Camera", "Context", "Error", "Float", "Fog", "Light", "Mesh", "Particles", "Picture", "Recorded",
+           "Recording", "Shadow", "Skin", "SkinStats", "Snapshot", "Sphere", "Stats", "Target", "View", "World", "version"]

@@ -1,12 +1,16 @@
 """Finds librivulet.so, gives its functions their types, and turns arrays, texts and errors into those of C and back."""
+from __future__ import annotations
+
 import ctypes
 import ctypes.util
 import glob
 import json
 import os
 from ctypes import POINTER, c_char_p, c_double, c_int32, c_size_t, c_uint32, c_void_p
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _structs as c
 
@@ -19,14 +23,14 @@ class BadInput(Error, ValueError):
     """An argument or the order of calls is wrong."""
 
 
-def _load():
-    here, prefix = os.path.dirname(os.path.abspath(__file__)), ("..",) * 4  # of share/rivulet/python/rivulet
+def _load() -> ctypes.CDLL:
+    here, prefix = os.path.dirname(os.path.abspath(__file__)), "../../../.."  # of share/rivulet/python/rivulet
     places = [os.environ.get("RIVULET_LIBRARY")]
-    places += [os.path.join(here, *up, "librivulet.so") for up in ((), ("..", "..", "lib"), (*prefix, "lib"), (*prefix, "lib64"))]
-    places += sorted(glob.glob(os.path.join(here, *prefix, "lib", "*", "librivulet.so")))  # lib/x86_64-linux-gnu
-    for place in filter(None, places):
-        if os.path.exists(place):
-            return ctypes.CDLL(place)
+    places += [os.path.join(here, folder, "librivulet.so") for folder in ("", "../../lib", prefix + "/lib", prefix + "/lib64")]
+    places += sorted(glob.glob(os.path.join(here, prefix, "lib", "*", "librivulet.so")))  # lib/x86_64-linux-gnu
+    for place in places:
+        if place and os.path.exists(place):
+            return ctypes.CDLL(place)  # which lets other threads of Python run during a call
     found = ctypes.util.find_library("rivulet")
     if found is None:
         raise ImportError("librivulet.so was not found: set the environment variable RIVULET_LIBRARY to its path")
@@ -34,68 +38,118 @@ def _load():
 
 
 lib = _load()
-_handle, _why = POINTER(c_void_p), POINTER(c.Why)
-for _name, _arguments in {
-        "context_create": [POINTER(c.ContextOptions), _handle],
-        "context_times": [c_void_p, POINTER(c.PassTime), c_size_t, POINTER(c_size_t)], "world_create": [c_void_p, POINTER(c.WorldOptions), _handle],
-        "world_step": [c_void_p, POINTER(c.Inputs), c_double], "world_reset": [c_void_p], "world_set": [c_void_p, c_char_p],
-        "world_stats": [c_void_p, POINTER(c.Stats)], "world_particles": [c_void_p, POINTER(c.Particles)],
-        "world_bodies": [c_void_p, c_void_p, c_size_t], "world_add_body": [c_void_p, POINTER(c.Body), POINTER(c_uint32)],
-        "world_remove_body": [c_void_p, c_uint32], "world_body": [c_void_p, c_uint32, POINTER(c_int32), c_void_p, c_void_p],
-        "world_body_ids": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
-        "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
-        "world_cast": [c_void_p, c_void_p, c_size_t, c_void_p], "world_heights": [c_void_p, c_void_p, c_size_t, c_void_p],
-        "world_wetness": [c_void_p, c_void_p, c_size_t, c_void_p],
-        "world_set_attribute": [c_void_p, ctypes.c_uint32, c_void_p, c_void_p, c_size_t],
-        "world_paint": [c_void_p, ctypes.c_uint32, c_void_p, c_void_p],
-        "world_set_volumes": [c_void_p, c_void_p, c_size_t], "world_volumes": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
-        "world_volume_events": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
-        "world_loads": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)], "world_export": [c_void_p, c_char_p],
-        "world_export_surface": [c_void_p, c_char_p], "world_save": [c_void_p, c_char_p], "world_restore": [c_void_p, c_char_p],
-        "skin_create": [c_void_p, POINTER(c.SkinOptions), _handle], "skin_add": [c_void_p, c_void_p, c_double],
-        "skin_step": [c_void_p, POINTER(c.SkinInputs), c_double], "skin_stats_of": [c_void_p, POINTER(c.SkinStats)]}.items():
+_handle, _why, _count = POINTER(c_void_p), POINTER(c.Why), POINTER(c_size_t)
+_FUNCTIONS: dict[str, list[Any]] = {
+    "context_create": [POINTER(c.ContextOptions), _handle], "context_lost": [c_void_p],
+    "context_times": [c_void_p, POINTER(c.PassTime), c_size_t, _count],
+    "context_set_surroundings": [c_void_p, POINTER(c.Surroundings)],
+    "world_create": [c_void_p, POINTER(c.WorldOptions), _handle],
+    "world_step": [c_void_p, POINTER(c.Inputs), c_double], "world_reset": [c_void_p], "world_set": [c_void_p, c_char_p],
+    "world_stats": [c_void_p, POINTER(c.Stats)],
+    "world_add_wall": [c_void_p, POINTER(c.Mesh), POINTER(c_uint32)], "world_remove_wall": [c_void_p, c_uint32],
+    "world_wall": [c_void_p, c_uint32, POINTER(c_int32)], "world_set_sources": [c_void_p, c_char_p],
+    "world_particles": [c_void_p, POINTER(c.Particles)], "world_rows": [c_void_p, POINTER(c.Rows)],
+    "world_bodies": [c_void_p, c_void_p, c_size_t], "world_add_body": [c_void_p, POINTER(c.Body), POINTER(c_uint32)],
+    "world_remove_body": [c_void_p, c_uint32], "world_body": [c_void_p, c_uint32, POINTER(c_int32), c_void_p, c_void_p],
+    "world_body_ids": [c_void_p, c_void_p, c_size_t, _count],
+    "world_save": [c_void_p, c_char_p], "world_restore": [c_void_p, c_char_p],
+    "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
+    "world_sample_later": [c_void_p, c_void_p, c_size_t, c.SAMPLES, c_void_p],
+    "world_buoyancy": [c_void_p, POINTER(c.Float), c_size_t, c_void_p, c_double, c_void_p],
+    "world_cast": [c_void_p, c_void_p, c_size_t, c_void_p], "world_heights": [c_void_p, c_void_p, c_size_t, c_void_p],
+    "world_wetness": [c_void_p, c_void_p, c_size_t, c_void_p],
+    "world_set_volumes": [c_void_p, c_void_p, c_size_t], "world_volumes": [c_void_p, c_void_p, c_size_t, _count],
+    "world_volume_events": [c_void_p, c_void_p, c_size_t, _count],
+    "world_set_attribute": [c_void_p, c_uint32, c_void_p, c_void_p, c_size_t],
+    "world_paint": [c_void_p, c_uint32, c_void_p, c_void_p], "world_loads": [c_void_p, c_void_p, c_size_t, _count],
+    "world_lines": [c_void_p, c.LINE, c_void_p], "world_export": [c_void_p, c_char_p], "world_export_surface": [c_void_p, c_char_p],
+    "world_draw": [c_void_p, POINTER(c.View), POINTER(c.Target)], "world_buffers": [c_void_p, POINTER(c.Buffers)],
+    "world_wet_solid": [c_void_p, c_int32, c_size_t, POINTER(c.WetSolid)],
+    "skin_create": [c_void_p, POINTER(c.SkinOptions), _handle], "skin_add": [c_void_p, c_void_p, c_double],
+    "skin_step": [c_void_p, POINTER(c.SkinInputs), c_double], "skin_texture": [c_void_p, POINTER(c_uint32)],
+    "skin_stats_of": [c_void_p, POINTER(c.SkinStats)],
+    "world_step_skins": [c_void_p, POINTER(c_void_p), POINTER(c.SkinInputs), c_size_t, c_double, POINTER(c.Air)],
+    "world_air_drops": [c_void_p, c_void_p, c_size_t, _count],
+    "snapshot_create": [c_void_p, _handle], "world_snapshot": [c_void_p, c_void_p], "world_record": [c_void_p, c_char_p],
+    "snapshot_replay": [c_void_p, c_void_p, c_char_p, c_size_t, POINTER(c.Recorded)],
+    "snapshot_draw": [c_void_p, POINTER(c.View), POINTER(c.Target)], "snapshot_buffers": [c_void_p, POINTER(c.Buffers)]}
+for _name, _arguments in _FUNCTIONS.items():
     getattr(lib, "rivulet_" + _name).argtypes = _arguments + [_why]
-for _name in ("context", "world", "skin"):
+for _name in ("context", "world", "skin", "snapshot"):
     getattr(lib, f"rivulet_{_name}_destroy").argtypes = [c_void_p]
     getattr(lib, f"rivulet_{_name}_destroy").restype = None
 lib.rivulet_version.restype = lib.rivulet_context_device.restype = c_char_p
 lib.rivulet_context_device.argtypes = lib.rivulet_context_memory.argtypes = [c_void_p]
 lib.rivulet_context_memory.restype = c_size_t
-lib.rivulet_context_stop.argtypes = [c_void_p, ctypes.c_uint32]
+lib.rivulet_context_stop.argtypes = [c_void_p, c_uint32]
 lib.rivulet_context_stop.restype = None
 
 
-def version():
+def version() -> str:
     """The version of the library, "0.1.0"."""
-    return lib.rivulet_version().decode()
+    return str(lib.rivulet_version().decode())
 
 
-def call(name, *arguments):
+def call(name: str, *arguments: Any) -> None:
+    """Calls rivulet_`name`. Error, BadInput: with the library's sentence."""
     why = c.Why()
     status = getattr(lib, "rivulet_" + name)(*arguments, ctypes.byref(why))
     if status != 0:
         raise (BadInput if status == 2 else Error)(why.message.decode(errors="replace"))
 
 
-def struct(kind, **fields):
-    return kind(size=ctypes.sizeof(kind), **fields)
+Struct = TypeVar("Struct", bound=ctypes.Structure)
 
 
-def array_of(values, shape, what, dtype=np.float32):
-    """A contiguous array of that type and shape, where -1 is any length. None stays None."""
-    if values is None:
-        return None
+def struct(of: type[Struct], **fields: Any) -> Struct:
+    """A struct that begins with its `size`."""
+    return of(size=ctypes.sizeof(of), **fields)
+
+
+def array_of(values: ArrayLike, shape: tuple[int, ...], what: str, dtype: Any = np.float32) -> NDArray[Any]:
+    """A contiguous array of that type and shape, where -1 is any length: `values` itself where it is one already."""
     array = np.ascontiguousarray(values, dtype)
     if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape)):
         raise BadInput(f"{what} has the shape {array.shape}: give {shape}, where -1 is any length")
     return array
 
 
-def address_of(array):
+def array_or_none(values: ArrayLike | None, shape: tuple[int, ...], what: str) -> NDArray[Any] | None:
+    return None if values is None else array_of(values, shape, what)
+
+
+def room_of(array: NDArray[Any], shape: tuple[int, ...], what: str, dtype: Any = np.float32) -> NDArray[Any]:
+    """An array of the caller's own that the library writes into."""
+    fits = array.ndim == len(shape) and all(n in (-1, m) for n, m in zip(shape, array.shape))
+    if not fits or array.dtype != dtype or not array.flags.c_contiguous or not array.flags.writeable:
+        raise BadInput(f"{what} is {array.dtype} of the shape {array.shape}: give a contiguous, writable array of {np.dtype(dtype)}, {shape}, "
+                       "where -1 is any length")
+    return array
+
+
+def address_of(array: NDArray[Any] | None) -> int | None:
     return None if array is None else array.ctypes.data
 
 
-def text_of(scene):
+def vector(values: ArrayLike, count: int, what: str) -> tuple[float, ...]:
+    """A member of a struct that is an array of floats."""
+    return tuple(array_of(values, (count,), what))
+
+
+def view_of(address: int | None, dtype: Any, count: int) -> NDArray[Any]:
+    """The memory at that address as an array, without a copy."""
+    kind = np.dtype(dtype)
+    return array_at((ctypes.c_char * (kind.itemsize * count)).from_address(address or 0), kind) if count else np.empty(0, kind)
+
+
+def array_at(memory: Any, kind: np.dtype[Any]) -> NDArray[Any]:
+    """Memory of ctypes as an array, which keeps it."""
+    array: NDArray[Any] = np.frombuffer(memory, kind)
+    return array
+
+
+def text_of(scene: Any) -> bytes | None:
+    """A text as it is, and what else a JSON text can hold as that."""
     if scene is None:
         return None
     text = scene if isinstance(scene, str) else json.dumps(scene, default=lambda value: value.tolist())  # of NumPy's
@@ -104,36 +158,8 @@ def text_of(scene):
     return text.encode()
 
 
-def whole(value, low, high, what):
+def whole(value: float, low: int, high: int, what: str) -> int:
     """`value` as an int, checked against its range in C."""
     if int(value) != value or not low <= value <= high:
         raise BadInput(f"{what} is {value}: give a whole number from {low} to {high}")
     return int(value)
-
-
-class Handle:
-    """Destroyed at the end of its `with`, by close(), or with the last reference."""
-
-    _kind = ""
-    _pointer = None
-
-    def close(self):
-        if self._pointer and lib is not None:  # None: Python is shutting down
-            getattr(lib, f"rivulet_{self._kind}_destroy")(self._pointer)
-        self._pointer = None
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
-
-    def __reduce__(self):
-        raise TypeError(f"a {type(self).__name__} cannot be copied: create another")
-
-    def __del__(self):
-        self.close()
-
-
-def view_of(address, dtype, count):
-    return np.frombuffer((ctypes.c_char * (dtype.itemsize * count)).from_address(address), dtype)

@@ -1,167 +1,339 @@
 """Worlds: particles in a box, with walls and bodies."""
+from __future__ import annotations
+
 import ctypes
 import json
 import os
+import tempfile
 from ctypes import c_int32, c_size_t, c_uint32, c_void_p
+from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _structs as c
-from ._library import BadInput, Error, address_of, array_of, call, struct, text_of, view_of, whole
-from .parts import Particles, Stats, rows_of
-from .query import Queries
+from ._handle import Handle, Lease
+from ._library import BadInput, Error, address_of, array_at, array_of, array_or_none, room_of, struct, text_of, view_of, whole
+from .parts import Air, Array, Body, Box, Mesh, Particles, Sphere, Stats, rows_of
+from .query import Path, Queries
+from .skin import Skin
+from .snapshot import Recording
+
+_WALL_STATES = ("bakes", "acts", "leaves")
+
+
+class Raised:
+    """What functions of the caller have raised within a call: it is raised again after the library has returned, because an exception must not
+    pass through C."""
+
+    def __init__(self) -> None:
+        self.errors: list[BaseException] = []
+
+    def guard(self, work: Callable[[], None]) -> None:
+        try:
+            if not self.errors:
+                work()
+        except BaseException as what:
+            self.errors.append(what)
+
+    def checked(self, work: Callable[..., None], *arguments: Any) -> None:
+        self.errors.clear()
+        try:
+            work(*arguments)
+        except Error as error:
+            raise error from (self.errors[0] if self.errors else None)
+        if self.errors:
+            raise self.errors.pop()
+
+
+def _host_of(host: Any, raised: Raised) -> c.BodyHost:
+    """rivulet_body_host of an object with its functions. It refers to no World, which must be destroyed before its context."""
+    def advance(_: Any, loads: int, gravity: Any, seconds: float, states: int, count: int) -> None:
+        def work() -> None:  # copies: the library's memory is valid during the call only
+            theirs = view_of(states, c.STATE, count)
+            given = theirs.copy()
+            host.advance(view_of(loads, c.LOAD, count).copy(), np.array(gravity.contents), seconds, given)
+            theirs[:] = given
+        raised.guard(work)
+
+    def reset(_: Any, states: int, count: int) -> None:
+        def work() -> None:
+            host.reset(view_of(states, c.STATE, count).copy())
+        raised.guard(work)
+
+    def added(_: Any, id: int, state: int) -> None:
+        def work() -> None:
+            host.added(id, view_of(state, c.STATE, 1)[0].copy())
+        raised.guard(work)
+
+    def removed(_: Any, id: int) -> None:
+        def work() -> None:
+            host.removed(id)
+        raised.guard(work)
+
+    return struct(c.BodyHost, advance=c.ADVANCE(advance), reset=c.RESET(reset),
+                  added=c.ADDED(added) if hasattr(host, "added") else c.ADDED(0),
+                  removed=c.REMOVED(removed) if hasattr(host, "removed") else c.REMOVED(0))
 
 
 class World(Queries):
-    """Particles in a box, with walls and bodies; see Context.world."""
+    """Particles in a box, with walls and bodies; made by Context.world. Close it before, with or after its context."""
 
-    def __init__(self, context, scene, walls, bodies, body_host, particles, velocities):
-        self._context, host = context, None
-        placed, moving = array_of(particles, (-1, 3), "particles"), array_of(velocities, (-1, 3), "velocities")
+    _instead = "pickle its scene, walls and bodies, and World.state(); set_state() restores it in another world of these"
+
+    def __init__(self, context: Handle, scene: Any, walls: Sequence[Mesh], bodies: Sequence[Body], body_host: Any,
+                 particles: ArrayLike | None, velocities: ArrayLike | None, skins_bring: float) -> None:
+        placed, moving = array_or_none(particles, (-1, 3), "particles"), array_or_none(velocities, (-1, 3), "velocities")
         count = 0 if placed is None else len(placed)
         if moving is not None and len(moving) != count:
             raise BadInput(f"{len(moving)} velocities were given for {count} particles: give one for each")
-        raised = self._raised = []  # by body_host; its functions reference this list and not the world, which must be destroyed before its context
-        if body_host is not None:
-            def guarded(work):
-                try:
-                    if not raised:
-                        work()
-                except BaseException as what:  # raised again after the library has returned: an exception must not pass through C
-                    raised.append(what)
+        self._raised, self._later, self._arrived = Raised(), {}, []
+        host = None if body_host is None else _host_of(body_host, self._raised)
+        text = text_of(scene)
+        options = struct(c.WorldOptions, json=text, walls=(c.Mesh * len(walls))(*(w._c for w in walls)), walls_count=len(walls),
+                         bodies=(c.Body * len(bodies))(*(b._c for b in bodies)), bodies_count=len(bodies),
+                         body_host=None if host is None else ctypes.pointer(host), particles=address_of(placed),
+                         particle_velocities=address_of(moving), particles_count=count, skins_bring=skins_bring)
+        pointer, owned = c_void_p(), context._owned
 
-            def advance(_, loads, gravity, seconds, states, count):
-                def work():  # copies: the library's memory is valid during the call only
-                    theirs = view_of(states, c.STATE, count)
-                    given = theirs.copy()
-                    body_host.advance(view_of(loads, c.LOAD, count).copy(), np.array(gravity.contents), seconds, given)
-                    theirs[:] = given
-                guarded(work)
+        def create() -> None:
+            context._call("world_create", options, pointer)
+            self._own("world", pointer, owned, owned.gl if owned else None, (host, self._later))
 
-            def reset(_, states, count):
-                guarded(lambda: body_host.reset(view_of(states, c.STATE, count).copy()))
-            self._host = struct(c.BodyHost, advance=c.ADVANCE(advance), reset=c.RESET(reset))
-            host = ctypes.pointer(self._host)
-        options = struct(c.WorldOptions, json=text_of(scene), walls=(c.Mesh * len(walls))(*(w._c for w in walls)), walls_count=len(walls),
-                        bodies=(c.Body * len(bodies))(*(b._c for b in bodies)), bodies_count=len(bodies), body_host=host,
-                        particles=address_of(placed), particle_velocities=address_of(moving), particles_count=count)
-        pointer = c_void_p()
-        self._checked("world_create", context._pointer, options, pointer)
-        self._pointer = pointer
-        fluid = json.loads(text_of(scene)).get("fluid", {}) if scene else {}
+        self._raised.checked(create)
+        fluid = json.loads(text).get("fluid", {}) if text else {}
         self._attributes = [attribute["name"] for attribute in fluid.get("attributes", [])]
 
-    def _checked(self, *arguments):
-        self._raised.clear()
+    def _call(self, name: str, *arguments: Any) -> None:
         try:
-            call(*arguments)
-        except Error as error:
-            raise error from (self._raised[0] if self._raised else None)
-        if self._raised:
-            raise self._raised.pop()
+            self._raised.checked(super()._call, name, *arguments)
+        finally:
+            while self._arrived:
+                self._later.pop(self._arrived.pop(), None)
 
-    def step(self, seconds, gravity=None, poses=None):
-        """Advances by a frame of `seconds`, in as many substeps as stability needs. gravity: m/s^2; poses: (n, 7), position (m) and rotation
-        (x y z w) of the walls that move, at the end of the frame; None: as given before, after a reset those of t = 0."""
-        gravity, poses = array_of(gravity, (3,), "gravity"), array_of(poses, (-1, 7), "poses")
-        inputs = struct(c.Inputs, gravity=address_of(gravity), poses=address_of(poses), poses_count=0 if poses is None else len(poses))
-        self._checked("world_step", self._pointer, inputs, seconds)
+    def step(self, seconds: float, gravity: ArrayLike | None = None, poses: ArrayLike | None = None,
+             shapes: Sequence[ArrayLike | None] | None = None) -> None:
+        """Advances by a frame of `seconds`, in as many substeps as stability needs; other threads of Python run meanwhile.
+        gravity: (3,) m/s^2, None: fluid.gravity; poses: (n, 7), position (m) and rotation (x y z w) of the walls that move, at the end of the
+        frame; None: as given before, after a reset those of t = 0; shapes: of each wall that deforms the positions of its vertices (n, 3), m,
+        at the end of the frame; None: as before. Both in the order of the walls' ids.
+        BadInput: values that are not finite or absurd. Error: out of memory; stopped by Context.stop."""
+        down, posed = array_or_none(gravity, (3,), "gravity"), array_or_none(poses, (-1, 7), "poses")
+        kept = [array_or_none(shape, (-1, 3), f"shapes[{k}]") for k, shape in enumerate(shapes or ())]
+        inputs = struct(c.Inputs, gravity=address_of(down), poses=address_of(posed), poses_count=0 if posed is None else len(posed))
+        if kept:
+            inputs.shapes, inputs.shapes_count = (c_void_p * len(kept))(*map(address_of, kept)), len(kept)
+        self._call("world_step", inputs, seconds)
 
-    def reset(self):
+    def reset(self) -> None:
         """Back to t = 0."""
-        self._checked("world_reset", self._pointer)
+        self._call("world_reset")
 
-    def set(self, path, value):
-        """Sets a parameter that docs/parameters.md does not call fixed: set("fluid.viscosity", 0.01)."""
+    def set(self, path: str, value: Any) -> None:
+        """Sets a parameter: set("fluid.viscosity", 0.01). BadInput: docs/parameters.md calls it fixed, or does not know it."""
         text = value if isinstance(value, str) else json.dumps(np.asarray(value).tolist())
-        call("world_set", self._pointer, text_of(f"{path}={text}"))
+        self._call("world_set", text_of(f"{path}={text}"))
 
-    def stats(self):
+    def stats(self) -> Stats:
+        """Numbers of the world now; on a GPU two or three frames old."""
         stats = struct(c.Stats)
-        call("world_stats", self._pointer, stats)
-        values = {name: getattr(stats, name) for name in Stats._fields}
-        return Stats(**{**values, "centre_of_mass": np.array(stats.centre_of_mass)})
+        self._call("world_stats", stats)
+        values: dict[str, Any] = {name: getattr(stats, name) for name in Stats._fields}
+        values["centre_of_mass"] = np.array(stats.centre_of_mass)
+        return Stats(**values)
 
-    def particles(self):
-        """All particles now, as Particles: arrays that later steps do not change."""
+    def _count(self) -> int:
         asked = struct(c.Particles)
-        call("world_particles", self._pointer, asked)
-        n = asked.count
-        arrays = Particles(np.empty((n, 3), np.float32), np.empty((n, 3), np.float32), np.empty(n, np.float32), np.empty(n, np.uint32))
-        asked = struct(c.Particles, capacity=n, **{name: address_of(array) for name, array in zip(Particles._fields, arrays)})
-        call("world_particles", self._pointer, asked)
-        return arrays
+        self._call("world_particles", asked)
+        return int(asked.count)
 
-    def attributes(self):
-        """The values of fluid.attributes now, by name, (n, 4) each: in the order of particles(), until the next step."""
-        asked = struct(c.Particles)
-        call("world_particles", self._pointer, asked)
-        arrays = {name: np.empty((asked.count, 4), np.float32) for name in self._attributes}
-        asked = struct(c.Particles, capacity=asked.count)
+    def particles(self, out: Particles | None = None) -> Particles:
+        """All particles now: copies, which later steps do not change. out: Particles with room for as many as there are or more, arrays of
+        the shapes and types of Particles, into which they are copied; the result's arrays are the parts of these that are filled. Waits for
+        the device. rows() does not copy."""
+        if out is None:
+            room = self._count()
+            out = Particles(np.empty((room, 3), np.float32), np.empty((room, 3), np.float32), np.empty(room, np.float32), np.empty(room, np.uint32))
+        else:
+            room = len(out.ids)
+            kinds = ((room, 3), np.float32), ((room, 3), np.float32), ((room,), np.float32), ((room,), np.uint32)
+            for name, array, (shape, kind) in zip(Particles._fields, out, kinds):
+                room_of(array, shape, "out." + name, kind)
+        asked = struct(c.Particles, capacity=room, **{name: address_of(array) for name, array in zip(Particles._fields, out)})
+        self._call("world_particles", asked)
+        if asked.count > room:
+            raise BadInput(f"out has room for {room} particles, and there are {asked.count}: give larger arrays")
+        return Particles(*(array[:asked.count] for array in out))
+
+    def rows(self) -> Particles:
+        """The particles in the memory of backend cpu: read-only views, no copies. A row whose density is negative holds no particle.
+        Valid until the next step, reset or restore; after it they show old or mixed values, and the memory stays while an array refers to it.
+        BadInput: another backend; use particles()."""
+        rows = self._rows()
+        positions = self._view(rows.positions, (np.float32, 4), rows.count)
+        return Particles(positions[:, :3], self._view(rows.velocities, (np.float32, 4), rows.count)[:, :3], positions[:, 3],
+                         self._view(rows.ids, np.uint32, rows.count))
+
+    def attribute_rows(self) -> dict[str, Array]:
+        """The values of fluid.attributes as rows() gives particles: (n, 4) each, in their order; views, no copies."""
+        rows = self._rows()
+        return {name: self._view(rows.attributes[k], (np.float32, 4), rows.count) for k, name in enumerate(self._attributes)}
+
+    def _rows(self) -> c.Rows:
+        rows = struct(c.Rows)
+        self._call("world_rows", rows)
+        return rows
+
+    def _view(self, address: int | None, kind: Any, count: int) -> Array:
+        """Memory of the world, which stays while the array or a view of it does."""
+        item = np.dtype(kind)
+        if count == 0 or self._owned is None:
+            return np.empty((0, *item.shape), item.base)
+        memory = (ctypes.c_char * (item.itemsize * count)).from_address(address or 0)
+        memory.lease = Lease(self._owned)  # type: ignore[attr-defined]
+        array = array_at(memory, item.base).reshape(count, *item.shape)
+        array.flags.writeable = False
+        return array
+
+    def attributes(self) -> dict[str, Array]:
+        """The values of fluid.attributes now, by name, (n, 4) float32 each: copies, in the order of particles() until the next step."""
+        arrays = {name: np.empty((self._count(), 4), np.float32) for name in self._attributes}
+        asked = struct(c.Particles, capacity=max((len(array) for array in arrays.values()), default=0))
         for k, values in enumerate(arrays.values()):
             asked.attributes[k] = address_of(values)
-        call("world_particles", self._pointer, asked)
+        self._call("world_particles", asked)
         return arrays
 
-    def set_attribute(self, name, ids, values):
-        """Sets an attribute of the particles with these ids: values (n, 4)."""
+    def set_attribute(self, name: str, ids: ArrayLike, values: ArrayLike) -> None:
+        """Sets an attribute of the particles with these ids (n,): values (n, 4), finite."""
         ids, values = array_of(ids, (-1,), "ids", np.uint32), array_of(values, (-1, 4), "values")
         if len(ids) != len(values):
             raise BadInput(f"{len(values)} values were given for {len(ids)} particles: give one for each")
-        call("world_set_attribute", self._pointer, self._attribute(name), address_of(ids), address_of(values), len(ids))
+        self._call("world_set_attribute", self._attribute(name), address_of(ids), address_of(values), len(ids))
 
-    def paint(self, name, volume, value):
-        """Sets an attribute of all particles that are in a volume now, a Box or Sphere: value (4,)."""
-        call("world_paint", self._pointer, self._attribute(name), address_of(rows_of([volume])), address_of(array_of(value, (4,), "value")))
+    def paint(self, name: str, volume: Box | Sphere, value: ArrayLike) -> None:
+        """Sets an attribute of all particles that are in a volume now: value (4,)."""
+        value = array_of(value, (4,), "value")
+        row = rows_of([volume])
+        self._call("world_paint", self._attribute(name), address_of(row), address_of(value))
 
-    def _attribute(self, name):
+    def _attribute(self, name: str) -> int:
         if name not in self._attributes:
             raise BadInput(f"'{name}' is no attribute: fluid.attributes has {', '.join(self._attributes) or 'none'}")
         return self._attributes.index(name)
 
-    def bodies(self):
-        """The states of the bodies now, in the order of body_ids: an array with the fields position (m), rotation (x y z w), velocity (m/s) and
-        spin (rad/s)."""
+    def set_sources(self, emitters: Sequence[Mapping[str, Any]] = (), sinks: Sequence[Mapping[str, Any]] = (),
+                    dry: Sequence[Mapping[str, Any]] = ()) -> None:
+        """Sets all emitters, sinks and dry volumes, each a dict as in the scene; fluid.maxParticles reserves memory for what emitters spawn.
+        With another number of emitters or sinks than before, all emitters begin again."""
+        self._call("world_set_sources", text_of({"emitters": list(emitters), "sinks": list(sinks), "dry": list(dry)}))
+
+    def add_wall(self, wall: Mesh) -> int:
+        """Adds a wall while the world runs; returns its id. It is baked beside the frames, 0.1 to 5 s, and acts from a later step on. Walls
+        given at the start have their index as id."""
+        id = c_uint32()
+        self._call("world_add_wall", wall._c, id)
+        return id.value
+
+    def remove_wall(self, id: int) -> None:
+        """Removes a wall; it acts until the others are baked without it."""
+        self._call("world_remove_wall", whole(id, 0, 2**32 - 1, "id"))
+
+    def wall(self, id: int) -> str:
+        """bakes (it does not act yet), acts, or leaves (it was removed, and acts until the others are baked). Error: its bake failed, and why.
+        BadInput: there is no such wall."""
+        state = c_int32()
+        self._call("world_wall", whole(id, 0, 2**32 - 1, "id"), state)
+        return _WALL_STATES[state.value]
+
+    def bodies(self) -> Array:
+        """The states of the bodies now, (n,) in the order of body_ids: the fields position (m), rotation (x y z w), velocity (m/s) and spin
+        (rad/s). A copy."""
         states = np.zeros(len(self.body_ids()), c.STATE)
-        call("world_bodies", self._pointer, address_of(states), len(states))
+        self._call("world_bodies", address_of(states), len(states))
         return states
 
-    def body_ids(self):
-        """The ids of the bodies in the world: those given at the start have their index."""
+    def body_ids(self) -> Array:
+        """(n,) uint32: the ids of the bodies in the world; those given at the start have their index."""
         count = c_size_t()
-        call("world_body_ids", self._pointer, None, 0, ctypes.byref(count))
+        self._call("world_body_ids", None, 0, ctypes.byref(count))
         ids = np.zeros(count.value, np.uint32)
-        call("world_body_ids", self._pointer, address_of(ids), len(ids), ctypes.byref(count))
+        self._call("world_body_ids", address_of(ids), len(ids), ctypes.byref(count))
         return ids
 
-    def body(self, id):
+    def body(self, id: int) -> tuple[Array, Array] | None:
         """(state, load) of a body, with the fields of bodies() and force (N), torque (N m); None while it is made ready."""
         state, load, inside = np.zeros((), c.STATE), np.zeros((), c.LOAD), c_int32()
-        call("world_body", self._pointer, whole(id, 0, 2**32 - 1, "id"), ctypes.byref(inside), address_of(state), address_of(load))
+        self._call("world_body", whole(id, 0, 2**32 - 1, "id"), ctypes.byref(inside), address_of(state), address_of(load))
         return (state, load) if inside.value else None
 
-    def add_body(self, body):
+    def add_body(self, body: Body) -> int:
         """Adds a Body while the world runs, within the memory of fluid.bodies.maxSamples; returns its id. One with a mesh is made ready beside the
         frames, and is in the world from a later step on."""
         id = c_uint32()
-        self._checked("world_add_body", self._pointer, body._c, id)
+        self._call("world_add_body", body._c, id)
         return id.value
 
-    def remove_body(self, id):
-        self._checked("world_remove_body", self._pointer, whole(id, 0, 2**32 - 1, "id"))
+    def remove_body(self, id: int) -> None:
+        """Removes a body. BadInput: a probe measures it, or a dry volume moves with it."""
+        self._call("world_remove_body", whole(id, 0, 2**32 - 1, "id"))
 
-    def export(self, path):
-        """Writes the particles as .ply, .vtp (ParaView) or .csv."""
-        call("world_export", self._pointer, os.fsencode(path))
+    def step_skins(self, skins: Sequence[Skin], seconds: float, gravity: ArrayLike | None = None, floor: float = 0.0,
+                   inputs: Sequence[Mapping[str, Any]] = ()) -> Air:
+        """Steps skins, as Skin.step does each, and the drops in the air between them, which belong to the world: what leaves a skin falls, lands
+        on a skin that it meets, goes into the water or is lost below `floor` (m). After the world's step of the same `seconds`. inputs: for
+        each skin a dict of arguments of Skin.step. Water is exchanged in a world with skins_bring above 0."""
+        if inputs and len(inputs) != len(skins):
+            raise BadInput(f"{len(inputs)} inputs were given for {len(skins)} skins: give one for each")
+        made = [skin._inputs(**given) for skin, given in zip(skins, inputs)]
+        down = array_or_none(gravity, (3,), "gravity")
+        air = struct(c.Air, gravity=address_of(down), floor=floor)
+        self._call("world_step_skins", (c_void_p * len(skins))(*(skin._pointer for skin in skins)),
+                   (c.SkinInputs * len(made))(*(each for each, _ in made)) if made else None, len(skins), seconds, air)
+        return Air(*(getattr(air, name) for name in Air._fields))
 
-    def export_surface(self, path):
-        """Writes the water's surface as .obj or .ply."""
-        call("world_export_surface", self._pointer, os.fsencode(path))
+    def air_drops(self) -> Array:
+        """The drops in the air, (n, 4): x y z and radius, m. A copy."""
+        count = c_size_t()
+        self._call("world_air_drops", None, 0, ctypes.byref(count))
+        drops = np.empty((count.value, 4), np.float32)
+        self._call("world_air_drops", address_of(drops), len(drops), ctypes.byref(count))
+        return drops
 
-    def save(self, path):
-        """Saves all that the next step depends on to a file."""
-        call("world_save", self._pointer, os.fsencode(path))
+    def wet_solid(self, solid: str, id: int) -> dict[str, Any]:
+        """For a material of the caller's own: where the wetness of a wall or body (solid: wall, body) with that id is in buffers(): from_world
+        (4, 4), cells (3,) and first_cell, as rivulet_wet_solid of rivulet.h. BadInput: it does not get wet."""
+        wet = struct(c.WetSolid)
+        if solid not in ("wall", "body"):
+            raise BadInput(f"solid is '{solid}': use wall or body")
+        self._call("world_wet_solid", int(solid == "body"), whole(id, 0, 2**32 - 1, "id"), wet)
+        return {"from_world": np.array(wet.from_world).reshape(4, 4).T, "cells": tuple(wet.cells), "first_cell": wet.first_cell}
 
-    def restore(self, path):
-        """Restores a file that save() wrote, of a world of the same scene; on the cpu the restored run is bit-identical."""
-        self._checked("world_restore", self._pointer, os.fsencode(path))
+    def record(self, path: Path) -> Recording:
+        """Records what is drawn of the world into a file, a frame each step, until the Recording is closed. Snapshot.replay reads it."""
+        return Recording(self, path)
+
+    def save(self, path: Path) -> None:
+        """Saves all that the next step depends on to a file. Error: it cannot be written."""
+        self._call("world_save", os.fsencode(path))
+
+    def restore(self, path: Path) -> None:
+        """Restores a file that save() wrote, of a world of the same scene; on the cpu the restored run is bit-identical. BadInput: it is of
+        another scene, or damaged."""
+        self._call("world_restore", os.fsencode(path))
+
+    def state(self) -> bytes:
+        """What save() writes, in memory: it can be pickled and sent to another process."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "state.rstate")
+            self.save(path)
+            with open(path, "rb") as file:
+                return file.read()
+
+    def set_state(self, state: bytes) -> None:
+        """Restores what state() returned, as restore() does."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "state.rstate")
+            with open(path, "wb") as file:
+                file.write(state)
+            self.restore(path)

@@ -1,0 +1,98 @@
+"""Handles of the library as objects of Python: who owns them, and which OpenGL context their calls need."""
+from __future__ import annotations
+
+import threading
+from ctypes import c_void_p
+from types import TracebackType
+from typing import Any, NoReturn, TypeVar
+
+from ._library import call, lib
+from ._off_screen import OffScreen
+
+_counting = threading.RLock()  # which a destructor may take while its own thread has it
+# With backends cpu and cl these functions alone need OpenGL. While one of them runs on a thread, others may run on another.
+_DRAWING = {"world_create", "skin_create", "snapshot_create", "skin_texture", "world_draw", "world_buffers", "snapshot_draw", "snapshot_buffers",
+            "context_set_surroundings"}
+
+
+class Owned:
+    """A handle of the library. It is destroyed when its object, all arrays in its memory and all that was made from it are gone."""
+
+    def __init__(self, kind: str, pointer: c_void_p, parent: Owned | None, gl: OffScreen | None, keeps: Any = None) -> None:
+        self.kind, self.pointer, self.parent, self.gl, self.keeps, self.users = kind, pointer, parent, gl, keeps, 1
+        if parent is not None:
+            parent.use()
+
+    def use(self) -> None:
+        with _counting:
+            self.users += 1
+
+    def release(self) -> None:
+        with _counting:
+            self.users -= 1
+            last = self.users == 0
+        if not last or lib is None:  # None: Python is shutting down
+            return
+        destroy = getattr(lib, f"rivulet_{self.kind}_destroy")
+        if self.gl is None:
+            destroy(self.pointer)
+        else:
+            with self.gl:
+                destroy(self.pointer)
+        if self.parent is not None:
+            self.parent.release()
+
+
+class Lease:
+    """Keeps a handle while arrays refer to its memory."""
+
+    def __init__(self, owned: Owned) -> None:
+        self.owned = owned
+        owned.use()
+
+    def __del__(self) -> None:
+        self.owned.release()
+
+
+Self = TypeVar("Self", bound="Handle")
+
+
+class Handle:
+    """Closed at the end of its `with`, by close(), or with the last reference."""
+
+    _owned: Owned | None = None
+    _instead = "create another"
+
+    def _own(self, kind: str, pointer: c_void_p, parent: Owned | None, gl: OffScreen | None, keeps: Any = None) -> None:
+        self._owned = Owned(kind, pointer, parent, gl, keeps)
+
+    @property
+    def _pointer(self) -> c_void_p | None:
+        return None if self._owned is None else self._owned.pointer
+
+    def _call(self, name: str, *arguments: Any) -> None:
+        """Calls rivulet_`name` of this handle, with its OpenGL context where that is needed."""
+        owned = self._owned
+        if owned is None or owned.gl is None or (not owned.gl.simulates and name not in _DRAWING):
+            call(name, self._pointer, *arguments)
+            return
+        with owned.gl:
+            call(name, self._pointer, *arguments)
+
+    def close(self) -> None:
+        """Releases it. What was made from it stays valid until it is closed itself."""
+        owned, self._owned = self._owned, None
+        if owned is not None:
+            owned.release()
+
+    def __enter__(self: Self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(f"a {type(self).__name__} cannot be copied or pickled: {self._instead}")
+
+    def __del__(self) -> None:
+        self.close()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """python_page.py ROOT [FOLDER]: runs the blocks of Python of docs/python.md one after the other, as one program, and looks at what they print
-and draw. FOLDER: where the pictures are left. The package must be importable."""
+and draw. FOLDER: where the pictures are left. The package must be importable. Exit 77: NumPy, SciPy or Matplotlib is not installed."""
 import io
 import os
 import pathlib
@@ -9,8 +9,13 @@ import sys
 import tempfile
 from contextlib import redirect_stdout
 
-import matplotlib
-import numpy as np
+try:
+    import matplotlib
+    import numpy as np
+    import scipy  # noqa: F401
+except ImportError as missing:
+    print(f"skipped: {missing.name} is not installed")
+    sys.exit(77)
 
 matplotlib.use("Agg")
 import matplotlib.image  # noqa: E402

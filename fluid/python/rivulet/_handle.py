@@ -18,8 +18,9 @@ _DRAWING = {"world_create", "skin_create", "snapshot_create", "skin_texture", "w
 class Owned:
     """A handle of the library. It is destroyed when its object, all arrays in its memory and all that was made from it are gone."""
 
-    def __init__(self, kind: str, pointer: c_void_p, parent: Owned | None, gl: OffScreen | None, keeps: Any = None) -> None:
-        self.kind, self.pointer, self.parent, self.gl, self.keeps, self.users = kind, pointer, parent, gl, keeps, 1
+    def __init__(self, kind: str, pointer: c_void_p, parent: Owned | None, gl: OffScreen | None, keeps: list[Any]) -> None:
+        self.kind, self.pointer, self.parent, self.gl, self.users = kind, pointer, parent, gl, 1
+        self.keeps = keeps  # functions of the caller, as long as the library may call them
         if parent is not None:
             parent.use()
 
@@ -63,8 +64,8 @@ class Handle:
     _owned: Owned | None = None
     _instead = "create another"
 
-    def _own(self, kind: str, pointer: c_void_p, parent: Owned | None, gl: OffScreen | None, keeps: Any = None) -> None:
-        self._owned = Owned(kind, pointer, parent, gl, keeps)
+    def _own(self, kind: str, pointer: c_void_p, parent: Owned | None, gl: OffScreen | None, *keeps: Any) -> None:
+        self._owned = Owned(kind, pointer, parent, gl, list(keeps))
 
     @property
     def _pointer(self) -> c_void_p | None:

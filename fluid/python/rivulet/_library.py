@@ -73,8 +73,9 @@ _FUNCTIONS: dict[str, list[Any]] = {
     "snapshot_create": [c_void_p, _handle], "world_snapshot": [c_void_p, c_void_p], "world_record": [c_void_p, c_char_p],
     "snapshot_replay": [c_void_p, c_void_p, c_char_p, c_size_t, POINTER(c.Recorded)],
     "snapshot_draw": [c_void_p, POINTER(c.View), POINTER(c.Target)], "snapshot_buffers": [c_void_p, POINTER(c.Buffers)]}
+functions = {_name: getattr(lib, "rivulet_" + _name) for _name in _FUNCTIONS}
 for _name, _arguments in _FUNCTIONS.items():
-    getattr(lib, "rivulet_" + _name).argtypes = _arguments + [_why]
+    functions[_name].argtypes = _arguments + [_why]
 for _name in ("context", "world", "skin", "snapshot"):
     getattr(lib, f"rivulet_{_name}_destroy").argtypes = [c_void_p]
     getattr(lib, f"rivulet_{_name}_destroy").restype = None
@@ -93,7 +94,7 @@ def version() -> str:
 def call(name: str, *arguments: Any) -> None:
     """Calls rivulet_`name`. Error, BadInput: with the library's sentence."""
     why = c.Why()
-    status = getattr(lib, "rivulet_" + name)(*arguments, ctypes.byref(why))
+    status = functions[name](*arguments, why)
     if status != 0:
         raise (BadInput if status == 2 else Error)(why.message.decode(errors="replace"))
 

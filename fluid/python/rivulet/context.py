@@ -56,7 +56,7 @@ class Context(Handle):
         else:
             with gl:
                 call("context_create", options, pointer)
-        self._own("context", pointer, None, gl, (said, finder))
+        self._own("context", pointer, None, gl, said, finder)
         if gl is not None:
             gl.simulates = self.device.startswith("gl:")
 

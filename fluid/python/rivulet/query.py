@@ -46,6 +46,8 @@ class Queries(Drawn):
             done.append(key)
 
         self._later[key] = c.SAMPLES(arrived)
+        if self._owned is not None and not any(each is self._later for each in self._owned.keeps):
+            self._owned.keeps.append(self._later)
         self._call("world_sample_later", address_of(places), len(places), self._later[key], None)
 
     def buoyancy(self, floats: Sequence[Float], seconds: float, gravity: ArrayLike | None = None) -> Array:

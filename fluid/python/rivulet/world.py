@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from . import _structs as c
 from ._handle import Handle, Lease
-from ._library import BadInput, Error, address_of, array_at, array_of, array_or_none, room_of, struct, text_of, view_of, whole
+from ._library import BadInput, Error, address_of, array_at, array_of, array_or_none, call, room_of, struct, text_of, view_of, whole
 from .parts import Air, Array, Body, Box, Mesh, Particles, Sphere, Stats, rows_of
 from .query import Path, Queries
 from .skin import Skin
@@ -98,13 +98,17 @@ class World(Queries):
 
         def create() -> None:
             context._call("world_create", options, pointer)
-            self._own("world", pointer, owned, owned.gl if owned else None, (host, self._later))
+            self._own("world", pointer, owned, owned.gl if owned else None, *([host] if host else []))
 
         self._raised.checked(create)
         fluid = json.loads(text).get("fluid", {}) if text else {}
         self._attributes = [attribute["name"] for attribute in fluid.get("attributes", [])]
 
     def _call(self, name: str, *arguments: Any) -> None:
+        owned = self._owned
+        if owned is not None and not owned.keeps and owned.gl is None:  # no function of the caller can be called: the short way of a step
+            call(name, owned.pointer, *arguments)
+            return
         try:
             self._raised.checked(super()._call, name, *arguments)
         finally:
@@ -118,6 +122,9 @@ class World(Queries):
         frame; None: as given before, after a reset those of t = 0; shapes: of each wall that deforms the positions of its vertices (n, 3), m,
         at the end of the frame; None: as before. Both in the order of the walls' ids.
         BadInput: values that are not finite or absurd. Error: out of memory; stopped by Context.stop."""
+        if gravity is None and poses is None and shapes is None:
+            self._call("world_step", None, seconds)
+            return
         down, posed = array_or_none(gravity, (3,), "gravity"), array_or_none(poses, (-1, 7), "poses")
         kept = [array_or_none(shape, (-1, 3), f"shapes[{k}]") for k, shape in enumerate(shapes or ())]
         inputs = struct(c.Inputs, gravity=address_of(down), poses=address_of(posed), poses_count=0 if posed is None else len(posed))

@@ -17,7 +17,7 @@ WITHOUT_STRUCT = {"jobs": "a job system in Python would hold each thread of the 
                   "error": "an exception"}
 AS_ARRAYS = {"pose": "POSE", "body_state": "STATE", "body_load": "LOAD", "sample": "SAMPLE", "ray": "RAY", "hit": "HIT", "volume": "VOLUME",
              "volume_count": "COUNT", "load": "LOADS", "light": "LIGHT"}
-root = pathlib.Path(sys.argv[1])
+root = pathlib.Path(sys.argv[1]).resolve()
 headers = "\n".join(path.read_text() for path in sorted((root / "fluid/capi").glob("rivulet*.h")))
 headers = re.sub(r"/\*.*?\*/", "", headers, flags=re.S)
 package = "\n".join(path.read_text() for path in sorted((root / "fluid/python/rivulet").glob("*.py")) if path.name not in ("_library.py", "_structs.py"))

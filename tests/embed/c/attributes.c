@@ -69,6 +69,10 @@ static size_t values_stay(rivulet_world* world) {
 }
 
 static void what_cannot_be_is_refused(rivulet_world* world) {
+    rivulet_rows unsized = {0};
+    REFUSED(rivulet_world_rows(NULL, &unsized, &why), "world is NULL");
+    REFUSED(rivulet_world_rows(world, NULL, &why), "rows is NULL");
+    REFUSED(rivulet_world_rows(world, &unsized, &why), "sizeof(rivulet_rows)");
     const rivulet_volume flat = {.shape = 2}, box = {.size = {1, 1, 1}};
     const float red[4] = {1, 0, 0, 1}, endless[4] = {INFINITY, 0, 0, 0};
     const uint32_t none = MOST;

@@ -36,7 +36,7 @@ for name in ("rivulet/librivulet.so", "rivulet/py.typed", "rivulet/world.py", "L
     assert any(each == name or each.endswith(".dist-info/" + name.split("/")[-1]) for each in names), (name, names)
 assert not [name for name in names if not name.startswith("rivulet")], names
 PY
-quietly "$pip" install --no-deps "$wheel"
+quietly "$pip" install "$wheel"
 mkdir "$work/elsewhere"
 cd "$work/elsewhere"
 python="$work/venv/bin/python"
@@ -47,8 +47,11 @@ RIVULET_EXPECTED="$version" "$python" "$here/test.py" "$work/elsewhere"
 # With an isolated build environment, of the wheels that Debian has.
 if ls /usr/share/python-wheels/wheel-*.whl >/dev/null 2>&1 && [ "$build" != full ]; then
     cd "$work/source"
-    quiet_build "$pip" wheel --no-deps --find-links /usr/share/python-wheels --wheel-dir "$work/isolated" .
-    [ -f "$work/isolated/${wheel##*/}" ] || { echo "no wheel with an isolated build"; exit 1; }
+    quietly "$pip" uninstall -y rivulet
+    quiet_build "$pip" install --find-links /usr/share/python-wheels .
+    cd "$work/elsewhere"
+    [ "$("$python" -c 'import rivulet; print(rivulet.__file__)')" = "$where" ] || { echo "not installed with an isolated build"; exit 1; }
+    cd "$work/source"
     # Editable: the package is the source's.
     quiet_build "$pip" install --no-build-isolation --no-deps --force-reinstall --editable .
     cd "$work/elsewhere"

@@ -40,7 +40,7 @@ foreach(module rivulet rivulet-fluid)
     install(FILES ${PROJECT_BINARY_DIR}/${module}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()
 
-install(FILES LICENSE docs/parameters.md docs/embedding.md docs/api.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/rivulet)
+install(FILES LICENSE docs/parameters.md docs/embedding.md docs/python.md docs/api.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/rivulet)
 install(FILES third_party/README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/rivulet RENAME third_party.md)  # dependencies and their licences
 install(DIRECTORY fluid/python/rivulet DESTINATION ${CMAKE_INSTALL_DATADIR}/rivulet/python FILES_MATCHING PATTERN "*.py" PATTERN py.typed
     PATTERN __pycache__ EXCLUDE)

@@ -87,7 +87,7 @@ class World(Queries):
         count = 0 if placed is None else len(placed)
         if moving is not None and len(moving) != count:
             raise BadInput(f"{len(moving)} velocities were given for {count} particles: give one for each")
-        self._raised, self._later, self._arrived = Raised(), {}, []
+        self._raised, self._later, self._arrived, self._room = Raised(), {}, [], 0
         host = None if body_host is None else _host_of(body_host, self._raised)
         text = text_of(scene)
         options = struct(c.WorldOptions, json=text, walls=(c.Mesh * len(walls))(*(w._c for w in walls)), walls_count=len(walls),
@@ -149,23 +149,31 @@ class World(Queries):
         values["centre_of_mass"] = np.array(stats.centre_of_mass)
         return Stats(**values)
 
-    def _count(self) -> int:
-        asked = struct(c.Particles)
-        self._call("world_particles", asked)
-        return int(asked.count)
+    def _copied(self, arrays: Callable[[int], dict[str, Array]]) -> dict[str, Array]:
+        """Arrays with room for so many particles, filled: once, unless there are more than before, because each call copies all from the
+        device."""
+        while True:
+            made = arrays(self._room)
+            asked = struct(c.Particles, capacity=self._room, **{name: address_of(made[name]) for name in Particles._fields if name in made})
+            for k, name in enumerate(self._attributes):
+                asked.attributes[k] = address_of(made.get("." + name))
+            self._call("world_particles", asked)
+            enough, self._room = asked.count <= self._room, int(asked.count)
+            if enough:
+                return {name: array[:asked.count] for name, array in made.items()}
 
     def particles(self, out: Particles | None = None) -> Particles:
         """All particles now: copies, which later steps do not change. out: Particles with room for as many as there are or more, arrays of
         the shapes and types of Particles, into which they are copied; the result's arrays are the parts of these that are filled. Waits for
         the device. rows() does not copy."""
+        def kinds(room: int) -> dict[str, tuple[tuple[int, ...], Any]]:
+            return dict(zip(Particles._fields, [((room, 3), np.float32), ((room, 3), np.float32), ((room,), np.float32), ((room,), np.uint32)]))
+
         if out is None:
-            room = self._count()
-            out = Particles(np.empty((room, 3), np.float32), np.empty((room, 3), np.float32), np.empty(room, np.float32), np.empty(room, np.uint32))
-        else:
-            room = len(out.ids)
-            kinds = ((room, 3), np.float32), ((room, 3), np.float32), ((room,), np.float32), ((room,), np.uint32)
-            for name, array, (shape, kind) in zip(Particles._fields, out, kinds):
-                room_of(array, shape, "out." + name, kind)
+            return Particles(**self._copied(lambda room: {name: np.empty(shape, kind) for name, (shape, kind) in kinds(room).items()}))
+        room = len(out.ids)
+        for name, (shape, kind) in kinds(room).items():
+            room_of(getattr(out, name), shape, "out." + name, kind)
         asked = struct(c.Particles, capacity=room, **{name: address_of(array) for name, array in zip(Particles._fields, out)})
         self._call("world_particles", asked)
         if asked.count > room:
@@ -204,12 +212,8 @@ class World(Queries):
 
     def attributes(self) -> dict[str, Array]:
         """The values of fluid.attributes now, by name, (n, 4) float32 each: copies, in the order of particles() until the next step."""
-        arrays = {name: np.empty((self._count(), 4), np.float32) for name in self._attributes}
-        asked = struct(c.Particles, capacity=max((len(array) for array in arrays.values()), default=0))
-        for k, values in enumerate(arrays.values()):
-            asked.attributes[k] = address_of(values)
-        self._call("world_particles", asked)
-        return arrays
+        filled = self._copied(lambda room: {"." + name: np.empty((room, 4), np.float32) for name in self._attributes})
+        return {name[1:]: array for name, array in filled.items()}
 
     def set_attribute(self, name: str, ids: ArrayLike, values: ArrayLike) -> None:
         """Sets an attribute of the particles with these ids (n,): values (n, 4), finite."""

@@ -126,6 +126,11 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         for _ in range(60):
             world.step(1 / 60)
         assert abs(world.stats().particles * 0.03**3 / 1e-3 - 1) < 0.1, world.stats().particles
+        assert len(world.particles().ids) == len(np.unique(world.particles().ids)) == world.stats().particles
+        before = len(world.particles().ids)
+        for _ in range(10):  # more than there was room for, in the call before
+            world.step(1 / 60)
+        assert len(world.particles().ids) == world.stats().particles > before
         refused(lambda: world.set_sources(emitters=[{"litres": 1}]), "litres")
         parts = world.lines()
         assert set(parts["part"]) == {"box", "emitter"} and len(parts[parts["part"] == "box"]) == 12

@@ -1,4 +1,6 @@
 """drawing.py FOLDER: pictures as arrays: where the water is, what hides it, light and conventions; skins' maps; other threads. Exit 77: no OpenGL."""
+import os
+import subprocess
 import sys
 import threading
 
@@ -151,4 +153,26 @@ with host, rivulet.Context(backend="cpu", find=lambda name: host._egl.eglGetProc
     refused(lambda: world.draw(camera, rivulet.Target(own._framebuffer, *SIZE, colours="bright")), "colours", "sRGB")
     own.close()
     context.lost()
+
+
+# Contexts of several threads at a time.
+def alone(k):
+    with rivulet.Context(backend=("cpu", "gl")[k % 2], off_screen=True) as context, context.world(POOL) as world:
+        for _ in range(3):
+            world.step(1 / 60)
+            picture = world.picture(camera, 64, 48)
+        seen.append((k % 2, picture.tobytes()))
+
+
+seen = []
+threads = [threading.Thread(target=alone, args=(k,)) for k in range(4)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+assert len(seen) == 4 and len(set(seen)) <= 2, "contexts of other threads changed a picture"
+# Without a driver there is a sentence.
+program = "import rivulet\ntry:\n    rivulet.Context(off_screen=True)\nexcept rivulet.Error as error:\n    print(error)"
+said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env={**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/none.json"})
+assert "no OpenGL 4.5" in said.stdout and "install" in said.stdout, said
 print("all holds")

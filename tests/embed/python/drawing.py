@@ -103,6 +103,16 @@ with context, context.world(POOL) as world:
         thread.join()
         assert (world.picture(camera, *SIZE) != before).any()
         assert snapshot.buffers()["count"] == world.stats().particles
+        # A recorded frame is the picture of its moment, though the world is elsewhere.
+        path = os.path.join(sys.argv[1], "drawn.rrec")
+        with world.record(path):
+            world.step(1 / 60)
+            then = world.picture(camera, *SIZE)
+            for _ in range(10):
+                world.step(1 / 60)
+        later = np.abs(world.picture(camera, *SIZE).astype(int) - then).mean()
+        snapshot.replay(world, path, 0)
+        assert np.abs(snapshot.picture(camera, *SIZE).astype(int) - then).mean() < 0.1 * later, later
     # From a thread that made nothing.
     seen = []
     thread = threading.Thread(target=lambda: seen.append(world.picture(camera, *SIZE)))

@@ -5,6 +5,7 @@ import io
 import os
 import pathlib
 import re
+import shutil
 import sys
 import tempfile
 from contextlib import redirect_stdout
@@ -27,16 +28,17 @@ found = re.finditer(r"^```python\n(.*?)^```$", text, re.M | re.S)
 blocks = ["\n" * text.count("\n", 0, block.start(1)) + block[1] for block in found]  # an error names the page's line
 if len(blocks) < 5:
     sys.exit(f"{page} has {len(blocks)} blocks of Python: the test reads it wrongly")
-with tempfile.TemporaryDirectory() as temporary:
-    folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else temporary)
+left = pathlib.Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else None
+with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    if not pathlib.Path("assets").exists():
-        pathlib.Path("assets").symlink_to(root / "assets")
+    pathlib.Path("assets").symlink_to(root / "assets")
     said, names = io.StringIO(), {"__name__": "__main__"}
     for block in blocks:
         with redirect_stdout(said):
             exec(compile(block, str(page), "exec"), names)
     print(said.getvalue())
+    for picture in ("front.png", "picture.png") if left else ():
+        shutil.copy(picture, left)
     ours, theirs = map(float, re.search(r"speed of the front: ([\d.]+), measured ([\d.]+)", said.getvalue()).groups())
     assert abs(ours / theirs - 1) < 0.05, "the front is not as fast as in the experiment"
     viscosity = float(re.search(r"^viscosity ([\d.]+)", said.getvalue(), re.M)[1])

@@ -6,7 +6,7 @@ from ctypes import c_void_p
 from types import TracebackType
 from typing import Any, NoReturn, TypeVar
 
-from ._library import call, lib
+from ._library import Error, call, lib
 from ._off_screen import OffScreen
 
 _counting = threading.RLock()  # which a destructor may take while its own thread has it
@@ -29,6 +29,7 @@ class Owned:
             self.users += 1
 
     def release(self) -> None:
+        """Error: it would be destroyed, and its OpenGL context is in use on another thread; it then has its user still."""
         with _counting:
             self.users -= 1
             last = self.users == 0
@@ -38,8 +39,12 @@ class Owned:
         if self.gl is None:
             destroy(self.pointer)
         else:
-            with self.gl:
-                destroy(self.pointer)
+            try:
+                with self.gl:
+                    destroy(self.pointer)
+            except Error:
+                self.use()
+                raise
         if self.parent is not None:
             self.parent.release()
 
@@ -81,10 +86,11 @@ class Handle:
             call(name, self._pointer, *arguments)
 
     def close(self) -> None:
-        """Releases it. What was made from it stays valid until it is closed itself."""
-        owned, self._owned = self._owned, None
-        if owned is not None:
-            owned.release()
+        """Releases it. What was made from it stays valid until it is closed itself. Error: its OpenGL context is in use on another thread; close
+        it again afterwards."""
+        if self._owned is not None:
+            self._owned.release()
+            self._owned = None
 
     def __enter__(self: Self) -> Self:
         return self

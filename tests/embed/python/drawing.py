@@ -165,6 +165,31 @@ with host, rivulet.Context(backend="cpu", find=lambda name: host._egl.eglGetProc
     context.lost()
 
 
+# A world whose OpenGL context is current on another thread is not closed, and can be closed later.
+context = rivulet.Context(backend="cpu", off_screen=True)
+world, taken, free = context.world(POOL), threading.Event(), threading.Event()
+
+
+def hold():
+    with context._owned.gl:
+        taken.set()
+        free.wait()
+
+
+thread = threading.Thread(target=hold)
+thread.start()
+taken.wait()
+try:
+    world.close()
+    raise AssertionError("closed")
+except rivulet.Error as error:
+    assert "another thread" in str(error), error
+free.set()
+thread.join()
+world.step(1 / 60)
+world.close()
+context.close()
+
 # Contexts of several threads at a time.
 def alone(k):
     with rivulet.Context(backend=("cpu", "gl")[k % 2], off_screen=True) as context, context.world(POOL) as world:

@@ -117,7 +117,7 @@ Status replayOf(const RunOptions& options, Session& session) {
 
 Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, const Session& session) {
     if (options.record.empty()) return std::optional<RecordingWriter>();
-    Result<RecordingWriter> file = RecordingWriter::open(options.record, aboutOf(session.scene()));
+    Result<RecordingWriter> file = RecordingWriter::open(options.record, recordedText(session));
     if (!file) return file.error();
     return std::optional(std::move(*file));
 }

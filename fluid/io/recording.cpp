@@ -243,6 +243,14 @@ Status RecordingWriter::close() {
     return file_.commit();
 }
 
+bool isRecording(const std::string& path) {
+    if (path.ends_with(".rrec")) return true;
+    if (factsOf(path).kind != FileFacts::Kind::regular) return false;  // a pipe would lose what is read
+    const Result<Descriptor> file = openInput(path);
+    std::array<uint8_t, 8> magic{};
+    return file && readAt(*file, magic.data(), magic.size(), 0) == std::ptrdiff_t{8} && magic == kMagic;
+}
+
 Error RecordingReader::damaged(const std::string& what) const {
     return badInput(fmt::format("{}: {}; record the run again with rivulet run --record", path_, what));
 }

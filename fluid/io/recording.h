@@ -61,6 +61,9 @@ class RecordingWriter {
     std::vector<uint64_t> offsets_;
 };
 
+// Whether a file begins as a recording does, or is named so: FILE.rrec.
+bool isRecording(const std::string& path);
+
 class RecordingReader {
   public:
     // For any bytes: error (badInput): a fault of the file, and where; (failed): it cannot be read, out of memory.

@@ -72,6 +72,7 @@ class FluidUpload {
     void dropTargets();
     bool holds(const std::shared_ptr<const void>& revision, const FluidLookParams& look, bool normals) const;
     void hold(std::shared_ptr<const void> revision, const FluidLookParams& look, bool normals, const FluidView& view);
+    FluidView kept(double start);
     Status bringDrops(std::span<const vec4> drops, std::span<const vec4> pendants, FluidView& out);
     Status holdWetCells(std::shared_ptr<const WetSurface> surface);
     Status share(std::span<const Array> arrays);

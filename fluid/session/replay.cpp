@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/json.h"
 #include "fluid/io/world_frame.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/session.h"
@@ -10,6 +11,11 @@
 namespace rivulet {
 
 namespace {
+
+constexpr std::string_view kVersion = "\nrun.version = ", kDevice = "\nrun.device = ", kScene = "\nrun.scene = ";
+
+// Where the part begins that only names the run; a line end in the scene's JSON is never followed by it.
+size_t endOfAbout(std::string_view text) { return std::min(text.rfind(kVersion), text.size()); }
 
 std::string_view takeLine(std::string_view& text) {
     const size_t end = std::min(text.find('\n'), text.size());
@@ -48,6 +54,23 @@ std::string aboutOf(const SceneFile& scene) {
     return about;
 }
 
+std::string recordedText(const Session& session) {
+    SceneFile scene = session.scene(), none;
+    const VisitFn defaults = [&none](ParamVisitor& v) { none.visit(v); };
+    const Device& device = session.world().device();
+    return fmt::format("{}{}{}{}{}: {}{}{}", aboutOf(scene), kVersion, RIVULET_VERSION, kDevice, backendName(device.backend()),
+                       device.info().name, kScene, writeJson([&scene](ParamVisitor& v) { scene.visit(v); }, &defaults));
+}
+
+RecordedRun recordedRun(const std::string& text) {
+    const size_t version = endOfAbout(text), device = text.find(kDevice, version), scene = text.find(kScene, device);
+    if (scene == std::string::npos) return {};
+    const auto between = [&text](size_t from, std::string_view name, size_t to) {
+        return text.substr(from + name.size(), to - from - name.size());
+    };
+    return {between(version, kVersion, device), between(device, kDevice, scene), text.substr(scene + kScene.size())};
+}
+
 RecordedFrame frameOf(const Session& session) {
     RecordedFrame frame;
     frameOf(session.world(), frame);
@@ -68,7 +91,8 @@ Result<FluidView> viewOf(FluidUpload& upload, const Session& session) {
 Result<Replay> Replay::open(const std::string& path, const SceneFile& scene, const Log& log) {
     Result<RecordingReader> reader = RecordingReader::open(path);
     if (!reader) return reader.error();
-    if (Status same = sameScene(path, reader->about(), aboutOf(scene)); !same) return same.error();
+    const std::string_view recorded = std::string_view(reader->about()).substr(0, endOfAbout(reader->about()));
+    if (Status same = sameScene(path, recorded, aboutOf(scene)); !same) return same.error();
     if (!reader->cut().empty()) log.notice(reader->cut());
     Replay replay(std::move(*reader), path);
     if (Status first = replay.next(); !first) return first.error();

@@ -1,6 +1,6 @@
 // Recordings: a run is recorded as it is drawn, and shown again from the file without simulation.
 //
-//     Result<RecordingWriter> file = RecordingWriter::open("run.rrec", aboutOf(session->scene()));
+//     Result<RecordingWriter> file = RecordingWriter::open("run.rrec", recordedText(*session));
 //     session->step(...);  file->add(frameOf(*session));  ...  file->close();
 //
 //     Result<Replay> replay = Replay::open("run.rrec", session->scene(), log);
@@ -24,6 +24,14 @@ struct FluidView;
 
 // The values in which a recording must agree with the scene: its name, its colliders and bodies, one a line.
 std::string aboutOf(const SceneFile& scene);
+// The text of a recording: aboutOf the session's scene, then the run.
+std::string recordedText(const Session& session);
+struct RecordedRun {
+    std::string version;  // of the program that recorded; all are "" if an earlier version recorded, which did not store them
+    std::string device;   // "cpu: NAME"
+    std::string scene;    // as JSON: what differs from the defaults, at the time when the recording began
+};
+RecordedRun recordedRun(const std::string& text);
 // The session's frame as shown now. Waits for the device.
 RecordedFrame frameOf(const Session& session);
 // The session's world or recorded frame, as buffers. Error: as FluidUpload::view.

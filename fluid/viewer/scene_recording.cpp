@@ -17,7 +17,7 @@ Status SceneRecording::toggle(const Session& session, const Log& log) {
     if (!session.flows().empty()) return badInput("a recording cannot store flow on skins: record a video instead");
     Result<std::string> path = freePath(session.scene().name, "rrec");
     if (!path) return path.error();
-    Result<RecordingWriter> writer = RecordingWriter::open(*path, aboutOf(session.scene()));
+    Result<RecordingWriter> writer = RecordingWriter::open(*path, recordedText(session));
     if (!writer) return writer.error();
     writer_ = std::move(*writer);
     path_ = std::move(*path);

@@ -1,6 +1,8 @@
 // `rivulet export`: the meshes it leaves behind, and how it ends when things go wrong.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "engine/scene/import_model.h"
@@ -58,6 +60,38 @@ TEST(ProgramExport, ErrorsNameTheirCause) {
     const Outcome dry = runProgram({"export", "dry.json", "--surface", "obj", "--seconds", "0.05", "--backend", "cpu"}, in(scratch));
     EXPECT_EQ(dry.code, 1);
     EXPECT_NE(dry.err.find("dry has no particles in its first 0.05 s"), std::string::npos) << dry.err;
+}
+
+// Data sets: what they hold is tested by embed.data.
+TEST(ProgramExport, ADataSetIsWholeOrNotThere) {
+    const Scratch scratch;
+    scratch.file("s.json", smallScene());
+    ASSERT_EQ(runProgram({"run", "s.json", "--no-render", "--frames", "8", "--backend", "cpu", "--record", "s.rrec"}, in(scratch)).code, 0);
+    const auto exported = [&](std::vector<std::string> words, const RunOptions& options) {
+        words.insert(words.begin(), {"export", "s.rrec", "--format", "zarr", "--out", "sets"});
+        return runProgram(words, options);
+    };
+    const Outcome whole = exported({}, in(scratch));
+    ASSERT_EQ(whole.code, 0) << whole.err;
+    EXPECT_EQ(whole.err, "");
+    EXPECT_TRUE(std::filesystem::exists(scratch.path() / "sets/s.zarr/position/7.0.0"));
+    expectRefusal(exported({}, in(scratch)), 1, "sets/s.zarr exists; remove it");
+    std::filesystem::remove_all(scratch.path() / "sets");
+
+    RunOptions full = in(scratch);  // as on a full disk: a file may not be longer than this
+    full.before = [] {
+        std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit most = {2000, 2000};
+        ::setrlimit(RLIMIT_FSIZE, &most);
+    };
+    expectRefusal(exported({}, full), 1, "sets/s.zarr/");
+    expectRefusal(exported({"--set", "fluid.viscosity=1"}, in(scratch)), 2, "not simulated again; leave --set out");
+    expectRefusal(exported({"--up", "z"}, in(scratch)), 2, "leave --up out");
+    expectRefusal(runProgram({"export", "s.rrec", "--format", "ply", "--out", "sets"}, in(scratch)), 2, "as hdf5 or zarr; for ply export");
+    std::filesystem::resize_file(scratch.path() / "s.rrec", 20);
+    expectRefusal(exported({}, in(scratch)), 2, "s.rrec: it is cut off after 20 bytes");
+    EXPECT_TRUE(!std::filesystem::exists(scratch.path() / "sets") || std::filesystem::is_empty(scratch.path() / "sets"))
+        << "nothing is left";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <signal.h>
 
 #include "engine/core/file.h"
+#include "engine/core/json.h"
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
@@ -100,6 +101,30 @@ TEST(ProgramReplay, ErrorsNameTheirCause) {
                   "s.rrec: it was recorded with name = small, this scene has name = other");
     expectRefusal(runProgram({"run", kScenes + "crying.json", "--headless", "--record", "c.rrec"}, in(scratch)), 2,
                   "a recording cannot store flow on skins");
+}
+
+// A recording names the scene and the device that it was made with; one of an earlier version does not, and is shown all the same.
+TEST(ProgramReplay, ARecordingHoldsItsSceneAndDevice) {
+    const Scratch scratch;
+    scratch.file("s.json", testing::smallScene());
+    const Outcome made = runProgram({"run", "s.json", "--no-render", "--frames", "2", "--backend", "cpu", "--record", "s.rrec", "--set",
+                                     "fluid.viscosity=0.003", "--set", "doc=\"a \\\"doc\\\"\nof two lines\""},
+                                    in(scratch));
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Result<RecordingReader> reader = RecordingReader::open((scratch.path() / "s.rrec").string());
+    ASSERT_TRUE(reader);
+    const RecordedRun run = recordedRun(reader->about());
+    EXPECT_EQ(run.version, RIVULET_VERSION);
+    EXPECT_EQ(run.device.substr(0, 5), "cpu: ");
+    SceneFile scene;
+    ASSERT_TRUE(readJson(run.scene, "s.rrec", [&scene](ParamVisitor& v) { scene.visit(v); })) << run.scene;
+    EXPECT_EQ(scene.name, "small");
+    EXPECT_EQ(scene.fluid.viscosity, 0.003F);
+    EXPECT_EQ(recordedRun(aboutOf(scene)).scene, "") << "of an earlier version";
+    EXPECT_TRUE(isRecording((scratch.path() / "s.rrec").string()));
+    std::filesystem::rename(scratch.path() / "s.rrec", scratch.path() / "other");
+    EXPECT_TRUE(isRecording((scratch.path() / "other").string())) << "by its content";
+    EXPECT_FALSE(isRecording((scratch.path() / "s.json").string()));
 }
 
 // Ctrl-C leaves a complete file; a truncated file is shown as far as it goes, with a notice.

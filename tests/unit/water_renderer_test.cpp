@@ -8,9 +8,11 @@
 #include <functional>
 
 #include "engine/app/capture.h"
+#include "engine/compute/device_cpu.h"
 #include "fluid/render/fluid_snapshot.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/render/renderers.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "tests/unit/host_fixture.h"
 #include "tests/unit/host_water.h"
 
@@ -44,6 +46,29 @@ bool mayBeWater(const FrameView& v, int x, int y) {
     }
     return static_cast<float>(x) > low.x - 2 && static_cast<float>(x) < high.x + 2 && static_cast<float>(y) > low.y - 2 &&
            static_cast<float>(y) < high.y + 2;
+}
+
+// A view of what has not changed copies nothing, and says so.
+TEST_F(WaterInAHostsPicture, AViewOfTheSameStateCopiesNothing) {
+    const auto device = makeCpuDevice(cpuKernels());
+    const auto world = FluidWorld::create(*device, world_->params(), {}, {});
+    ASSERT_TRUE(world) << world.error().message;
+    FluidUpload upload;
+    const auto first = upload.view(**world, {});
+    ASSERT_TRUE(first) << first.error().message;
+    ASSERT_GT(first->count, 0U);
+    const size_t all = first->count * (2 * sizeof(vec4) + sizeof(uint32_t));  // positions, velocities, ids
+    EXPECT_EQ(upload.facts().bytes, all);
+    const auto again = upload.view(**world, {});
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->position, first->position);
+    EXPECT_EQ(upload.facts().bytes, 0U);
+    FluidSnapshot snapshot;
+    ASSERT_TRUE(snapshot.take(**world));
+    ASSERT_TRUE(upload.view(snapshot, {}));
+    EXPECT_EQ(upload.facts().bytes, all);
+    ASSERT_TRUE(upload.view(snapshot, {}));
+    EXPECT_EQ(upload.facts().bytes, 0U);
 }
 
 // What drips beside the world is in its snapshot as it was, and gone after the next.

@@ -1,0 +1,505 @@
+"""Finds the parameters of a scene whose run reproduces a measured curve.
+
+    python3 -m rivulet.fit FIT.json            # prints the result; writes result.json, points.csv and fit.png into FIT's folder
+
+    from rivulet.fit import fit
+    found = fit("dam.json", {"fluid.viscosity": (1e-6, 1e-1, "log")}, measured, "front")     # measured: n x 2, seconds and SI units
+    print(found)
+
+Every run is kept in the folder of the fit by its values: a fit that was killed goes on where it was, and a fit with another curve or another
+method of search reuses the runs. Needs NumPy and SciPy; Matplotlib for the plot. docs/fitting.md explains the results.
+"""
+import concurrent.futures
+import copy
+import csv
+import hashlib
+import importlib.util
+import inspect
+import json
+import math
+import multiprocessing
+import os
+import pathlib
+import sys
+from collections import namedtuple
+
+import numpy as np
+
+OF_A_WORLD = ("fluid", "emitters", "sinks", "dry")  # the parts of a scene that act on water; colliders and the like need a function `start`
+NOT_OF_A_WORLD = ("colliders", "bodies", "flow")
+METHODS = ("brent", "nelder-mead", "differential evolution")
+SCAN = 7  # values over the range of a single parameter, before Brent's method searches between the best of them
+
+Point = namedtuple("Point", ["values", "residual", "shift", "cached"])
+Point.__doc__ = "A tried point: values (by parameter), residual (rms difference, in the unit of the curve), shift (s), cached: no run was needed."
+
+
+class FitError(ValueError):
+    """The request makes no sense: one sentence with the place and the remedy."""
+
+
+# --- series: a number of a world, at the current time ------------------------------------------------------------------------------------------
+
+def front(world, spacing):
+    """Position of the front along +x, m: near the floor, the median over the tank's width, which ignores single drops that run ahead."""
+    at = world.particles().positions
+    near = at[at[:, 1] < at[:, 1].min() + 2 * spacing]
+    strip = (near[:, 2] / spacing).astype(int)
+    return float(np.median([near[strip == k, 0].max() for k in np.unique(strip)]) + 0.5 * spacing)
+
+
+def height(world, spacing):
+    """The highest particle's top, m."""
+    return float(world.particles().positions[:, 1].max() + 0.5 * spacing)
+
+
+SERIES = {
+    "front": front, "height": height,
+    **{f"centre_of_mass_{axis}": (lambda k: lambda world, _: float(world.stats().centre_of_mass[k]))(k) for k, axis in enumerate("xyz")},
+    "kinetic": lambda world, _: float(world.stats().kinetic),
+    "potential": lambda world, _: float(world.stats().potential),
+    "maximum_speed": lambda world, _: float(world.stats().maximum_speed),
+}
+
+
+def _function(name, what):
+    """A function by `FILE.py:NAME`."""
+    file, _, function = name.rpartition(":")
+    if not file or not pathlib.Path(file).is_file():
+        raise FitError(f"{what} {name!r} is neither {', '.join(SERIES)} nor FILE.py:FUNCTION of a file that exists")
+    spec = importlib.util.spec_from_file_location("rivulet_fit_" + pathlib.Path(file).stem, file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    if not hasattr(module, function):
+        raise FitError(f"{file} has no function {function}")
+    return getattr(module, function)
+
+
+def _named(function):
+    """The name by which another process finds a function, and what its text is."""
+    file = inspect.getsourcefile(function)
+    if file is None or "<" in function.__qualname__ or "." in function.__qualname__:
+        raise FitError(f"{function} cannot be called by another process: define it with def at the top of a file")
+    return f"{os.path.abspath(file)}:{function.__name__}"
+
+
+# --- one run -----------------------------------------------------------------------------------------------------------------------------------
+
+def _set(scene, path, value):
+    """Sets "fluid.blocks.0.max" in a scene's dict."""
+    at, names = scene, path.split(".")
+    for name, following in zip(names[:-1], names[1:]):
+        if isinstance(at, list):
+            if not name.isdigit() or int(name) >= len(at):
+                raise FitError(f"{path}: the scene has {len(at)} items there")
+            at = at[int(name)]
+        else:
+            at = at.setdefault(name, [] if following.isdigit() else {})
+    if isinstance(at, list):
+        if not names[-1].isdigit() or int(names[-1]) >= len(at):
+            raise FitError(f"{path}: the scene has {len(at)} items there; write the list into the scene")
+        at[int(names[-1])] = value
+    else:
+        at[names[-1]] = value
+
+
+def _run(job):
+    """[times, values] of one run; called in a process of its own. `job`: as Search.job."""
+    import rivulet
+    scene = copy.deepcopy(job["scene"])
+    for path, value in job["settings"].items():
+        _set(scene, path, value)
+    series = SERIES.get(job["series"]) or _function(job["series"], "series")
+    spacing = scene.get("fluid", {}).get("spacing", 0.02)
+    with rivulet.Context(backend=job["backend"], threads=job["threads"]) as context:
+        world = _function(job["start"], "start")(context, scene) if job["start"] else context.world(scene)
+        with world:
+            times, values = [world.stats().time], [series(world, spacing)]
+            while times[-1] < job["seconds"]:
+                world.step(job["frame"])
+                if world.stats().time <= times[-1]:
+                    raise FitError(f"the run stopped at {times[-1]:.3g} s with {job['settings']}: its time no longer advances")
+                times.append(world.stats().time)
+                values.append(series(world, spacing))
+    if not np.isfinite(values).all():
+        raise FitError(f"series {job['series']} is not finite with {job['settings']}")
+    return [times, values]
+
+
+def _write(path, text):
+    part = f"{path}.part{os.getpid()}"
+    with open(part, "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(part, path)
+
+
+# --- the search --------------------------------------------------------------------------------------------------------------------------------
+
+class Range:
+    """The range of a parameter, as 0 to 1."""
+
+    def __init__(self, name, low, high, scale="linear"):
+        self.name, self.low, self.high, self.log = name, float(low), float(high), scale == "log"
+        if scale not in ("linear", "log"):
+            raise FitError(f"{name}: scale {scale!r} is neither linear nor log")
+        if not self.low < self.high or not math.isfinite(self.high - self.low):
+            raise FitError(f"{name}: a range goes from a smaller to a larger number, not from {low} to {high}")
+        if self.log and self.low <= 0:
+            raise FitError(f"{name}: a range with scale log begins above 0, not at {low}")
+
+    def value(self, u):
+        u = min(max(float(u), 0.0), 1.0)
+        value = self.low * (self.high / self.low) ** u if self.log else self.low + u * (self.high - self.low)
+        return float(f"{value:.9g}")  # the key of the kept run
+
+    def place(self, value):
+        return math.log(value / self.low) / math.log(self.high / self.low) if self.log else (value - self.low) / (self.high - self.low)
+
+
+class Search:
+    def __init__(self, job, ranges, measured, shift, folder, jobs):
+        self.job, self.ranges, self.measured, self.shift, self.folder, self.jobs = job, ranges, measured, shift, pathlib.Path(folder), jobs
+        self.points, self.curves, self.pool = [], {}, None
+        (self.folder / "runs").mkdir(parents=True, exist_ok=True)
+
+    def path(self, values):
+        import rivulet
+        what = {**self.job, "settings": {**self.job["settings"], **values}, "version": rivulet.version()}
+        del what["threads"]  # results do not depend on it
+        for name in ("series", "start"):  # a function that was changed is another one
+            if what[name] and what[name] not in SERIES:
+                what[name] += hashlib.sha256(pathlib.Path(what[name].rpartition(":")[0]).read_bytes()).hexdigest()
+        return self.folder / "runs" / (hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:24] + ".json")
+
+    def residual(self, curve):
+        """Least rms difference over the shifts, and the shift: time of the run = time of the measurement + shift."""
+        times, values = (np.array(part) for part in curve)
+        t, y = self.measured.T
+        rms = lambda shift: math.sqrt(np.mean((np.interp(t + shift, times, values) - y) ** 2))
+        low, high = self.shift
+        if low == high:
+            return rms(low), low
+        tried = np.linspace(low, high, 201)
+        best = tried[np.argmin([rms(s) for s in tried])]
+        step = tried[1] - tried[0]
+        fine = np.clip(np.linspace(best - step, best + step, 101), low, high)
+        costs = [rms(s) for s in fine]
+        return min(costs), float(fine[np.argmin(costs)])
+
+    def many(self, places):
+        """Residuals at several places, each run in a process of its own."""
+        wanted = [{r.name: r.value(u) for r, u in zip(self.ranges, np.atleast_1d(place))} for place in places]
+        paths = [self.path(values) for values in wanted]
+        kept = [path.exists() for path in paths]
+        missing = {path: values for path, values in zip(paths, wanted) if not path.exists()}
+        threads = max(1, (os.cpu_count() or 1) // max(1, min(self.jobs, len(missing))))
+        work = {path: {**self.job, "threads": threads, "settings": {**self.job["settings"], **values}} for path, values in missing.items()}
+        if len(work) > 1 and self.jobs > 1:
+            if self.pool is None:
+                self.pool = concurrent.futures.ProcessPoolExecutor(self.jobs, multiprocessing.get_context("spawn"))
+            running = {self.pool.submit(_run, one): path for path, one in work.items()}
+            for done in concurrent.futures.as_completed(running):
+                _write(running[done], json.dumps(done.result()))
+        else:
+            for path, one in work.items():
+                _write(path, json.dumps(_run(one)))
+        results = []
+        for values, path, cached in zip(wanted, paths, kept):
+            curve = json.loads(path.read_text(encoding="utf-8"))
+            residual, shift = self.residual(curve)
+            if not any(p.values == values for p in self.points):
+                self.points.append(Point(values, residual, shift, cached))
+                self.curves[tuple(values.values())] = curve
+            results.append(residual)
+        return results
+
+    def one(self, place):
+        return self.many([place])[0]
+
+    def close(self):
+        if self.pool is not None:
+            self.pool.shutdown(cancel_futures=True)
+
+
+def _search(search, method, evaluations, tolerance, seed):
+    from scipy import optimize
+    from scipy.stats import qmc
+    count = len(search.ranges)
+    if method == "brent":
+        scan = np.linspace(0, 1, SCAN)
+        costs = search.many([[u] for u in scan])
+        k = int(np.argmin(costs))
+        between = (scan[max(k - 1, 0)], scan[min(k + 1, SCAN - 1)])
+        optimize.minimize_scalar(lambda u: search.one([u]), bounds=between, method="bounded",
+                                 options={"xatol": tolerance, "maxiter": max(1, evaluations - SCAN)})
+        best = search.ranges[0].place(min(search.points, key=lambda p: p.residual).values[search.ranges[0].name])
+        # Points beside the best: the curvature is measured, not found by chance.
+        search.many([[min(max(best + d, 0), 1)] for d in (-0.08, -0.04, 0.04, 0.08)])
+    elif method == "nelder-mead":
+        starts = qmc.LatinHypercube(count, seed=seed).random(min(max(4 * count, 8), evaluations))
+        costs = search.many(starts)
+        best = starts[np.argmin(costs)]
+        simplex = np.vstack([best] + [np.clip(best + (0.15 if best[k] < 0.5 else -0.15) * np.eye(count)[k], 0, 1) for k in range(count)])
+        optimize.minimize(search.one, best, method="Nelder-Mead", bounds=[(0, 1)] * count,
+                          options={"initial_simplex": simplex, "xatol": tolerance, "fatol": 0, "maxfev": max(1, evaluations - len(starts))})
+    else:
+        generation = 5 * count
+        optimize.differential_evolution(search.one, [(0, 1)] * count, popsize=5, maxiter=max(1, evaluations // generation - 1), tol=tolerance,
+                                        seed=seed, polish=False, updating="deferred", workers=lambda work, places: search.many(list(places)))
+
+
+# --- the result --------------------------------------------------------------------------------------------------------------------------------
+
+class Fit:
+    """best: value by parameter. residual: rms difference from the curve, in its unit; relative: divided by the curve's range.
+    shift: s. error: standard error by parameter, from the curvature about the best point, None if it cannot be told. interval: values that fit
+    as well as the best, within one standard error. notes: sentences. points: a list of Point. times, values: the best run's curve."""
+
+    def __init__(self, search):
+        self.points = search.points
+        best = min(search.points, key=lambda p: p.residual)
+        self.best, self.residual, self.shift = best.values, best.residual, best.shift
+        self.ranges, self.measured = search.ranges, search.measured
+        self.relative = best.residual / max(float(np.ptp(search.measured[:, 1])), 1e-300)
+        self.times, self.values = search.curves[tuple(best.values.values())]
+        self.error, self.interval, self.notes = {}, {}, []
+        self._uncertainty()
+
+    def _uncertainty(self):
+        n, count = len(self.measured), len(self.ranges)
+        free = count + (1 if any(p.shift != self.shift for p in self.points) else 0)
+        places = np.array([[r.place(p.values[r.name]) for r in self.ranges] for p in self.points])
+        squares = n * np.array([p.residual for p in self.points]) ** 2
+        best = int(np.argmin(squares))
+        rise = squares[best] / max(n - free, 1)  # of the sum of squares, at one standard error
+        curvature, noise = self._curvature(places, squares, best, rise)
+        level = rise + 2 * noise  # runs differ among themselves, as particles do
+        for k, r in enumerate(self.ranges):
+            value, u = self.best[r.name], places[best, k]
+            deviation = None if curvature is None else math.sqrt(2 * level * np.linalg.inv(curvature)[k, k])
+            if count == 1:
+                low, high = self._crossings(places[:, 0], squares, squares[best] + level)
+            else:
+                low, high = (0.0, 1.0) if deviation is None else (max(u - deviation, 0.0), min(u + deviation, 1.0))
+            self.interval[r.name] = (r.value(low), r.value(high))
+            bounded = deviation is not None and low > 0 and high < 1
+            self.error[r.name] = 0.5 * (r.value(u + deviation) - r.value(u - deviation)) if bounded else None
+            text = f"from {r.value(low):.3g} to {r.value(high):.3g}"
+            if low <= 0 and high >= 1:
+                self.notes.append(f"{r.name} does not matter for this curve: values {text}, the whole range, fit as well as the best.")
+            elif min(u, 1 - u) < 0.02:
+                self.notes.append(f"{r.name} = {value:.3g} lies on the border of its range, {r.low:g} to {r.high:g}: widen the range.")
+            elif low <= 0 or high >= 1:
+                side, border = ("lower", r.low) if low <= 0 else ("upper", r.high)
+                self.notes.append(f"{r.name} has no {side} bound: values {text} fit as well as {value:.3g}, and {border:g} is the border of the range.")
+
+    @staticmethod
+    def _crossings(places, squares, level):
+        """The interval outside which the sum of squares is above `level`, from straight lines between the tried places."""
+        order = np.argsort(places)
+        u, s = places[order], squares[order]
+        below = np.flatnonzero(s <= level)
+        first, last = below[0], below[-1]
+        low = 0.0 if first == 0 else u[first] - (u[first] - u[first - 1]) * (level - s[first]) / (s[first - 1] - s[first])
+        high = 1.0 if last == len(u) - 1 else u[last] + (u[last + 1] - u[last]) * (level - s[last]) / (s[last + 1] - s[last])
+        return low, high
+
+    @staticmethod
+    def _curvature(places, squares, best, rise):
+        """Second derivatives of the sum of squares, from a quadratic through the points about the best, and the rms of what it leaves.
+        None: there are too few points, or it has no minimum."""
+        count = places.shape[1]
+        terms = [(i, j) for i in range(count) for j in range(i, count)]
+        need = 1 + count + len(terms)
+        d = places - places[best]
+        near = np.argsort(np.abs(d).max(axis=1))
+        near = near[:max(2 * need + 1, np.count_nonzero(squares <= squares[best] + 9 * rise))]  # those within three standard errors, too
+        if len(near) < need + 1:
+            return None, 0.0
+        size = max(np.abs(d[near]).max(), 1e-12)
+        x = d[near] / size
+        columns = np.column_stack([np.ones(len(x))] + [x[:, i] for i in range(count)] + [x[:, i] * x[:, j] for i, j in terms])
+        weights = 1 / (1 + (squares[near] - squares[best]) / rise)
+        c, _, rank, _ = np.linalg.lstsq(columns * weights[:, None], squares[near] * weights, rcond=None)
+        noise = math.sqrt(np.sum((weights * (columns @ c - squares[near])) ** 2) / (np.sum(weights**2) * (1 - need / len(near))))
+        if rank < need:
+            return None, noise
+        curvature = np.zeros((count, count))
+        for (i, j), value in zip(terms, c[1 + count:]):
+            curvature[i, j] += value / size**2
+            curvature[j, i] += value / size**2
+        return (curvature if np.linalg.eigvalsh(curvature).min() > 0 else None), noise
+
+    def __str__(self):
+        lines = [f"{'run':>4}  " + "  ".join(f"{r.name:>18}" for r in self.ranges) + "      residual   shift, s"]
+        for k, p in enumerate(self.points):
+            lines.append(f"{k + 1:>4}  " + "  ".join(f"{v:>18.6g}" for v in p.values.values()) + f"  {p.residual:>12.4g}  {p.shift:>9.4g}")
+        for name, value in self.best.items():
+            error = "" if self.error[name] is None else f" +- {self.error[name]:.2g}"
+            lines.append(f"{name} = {value:.4g}{error}")
+        shift = f", the run is {self.shift:.3g} s later than the measurement" if self.shift else ""
+        lines.append(f"rms difference {self.residual:.3g}, {100 * self.relative:.2g} % of the curve's range{shift}")
+        return "\n".join(lines + self.notes)
+
+    def save(self, folder):
+        """Writes result.json and points.csv."""
+        folder = pathlib.Path(folder)
+        _write(folder / "result.json", json.dumps({"best": self.best, "error": self.error, "interval": self.interval, "residual": self.residual,
+                                                   "relative": self.relative, "shift": self.shift, "notes": self.notes}, indent=2) + "\n")
+        with open(folder / "points.csv", "w", newline="", encoding="utf-8") as file:
+            rows = csv.writer(file)
+            rows.writerow([*self.best, "residual", "shift"])
+            rows.writerows([*p.values.values(), p.residual, p.shift] for p in self.points)
+
+    def plot(self, path, label="", unit=""):
+        """The measured curve with the best run, and the residual over each parameter."""
+        import matplotlib
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+        figure, axes = plt.subplots(1, 1 + len(self.ranges), figsize=(5.2 + 3.8 * len(self.ranges), 4.2), dpi=110, layout="constrained")
+        axes[0].plot(self.times, self.values, color="#1769aa", linewidth=2, label=", ".join(f"{n} = {v:.3g}" for n, v in self.best.items()))
+        axes[0].plot(self.measured[:, 0] + self.shift, self.measured[:, 1], "o", color="#c0392b", markersize=5, label="measured")
+        axes[0].set(xlabel="time (s)", ylabel=f"{label} ({unit})" if unit else label)
+        axes[0].locator_params(axis="x", nbins=6)
+        axes[0].legend(frameon=False)
+        for axis, r in zip(axes[1:], self.ranges):
+            axis.plot([p.values[r.name] for p in self.points], [p.residual for p in self.points], "o", color="0.45", markersize=4)
+            axis.plot(self.best[r.name], self.residual, "o", color="#1769aa", markersize=8)
+            axis.axvspan(*self.interval[r.name], color="#1769aa", alpha=0.12, linewidth=0)
+            axis.set(xlabel=r.name, ylabel="rms difference" + (f" ({unit})" if unit else ""), xscale="log" if r.log else "linear", ylim=(0, None))
+        for axis in axes:
+            axis.grid(color="0.92")
+        figure.savefig(path)
+        plt.close(figure)
+
+
+def fit(scene, parameters, measured, series, *, start=None, settings=None, seconds=None, shift=(0, 0), method=None, evaluations=40, tolerance=5e-3,
+        folder="fit", jobs=None, backend="cpu", frame=1 / 240, seed=1):
+    """A Fit: the values of `parameters` with which a run of `scene` reproduces `measured` best.
+
+    scene       a dict, or a path of a scene file without colliders
+    parameters  {path: (low, high)} or {path: (low, high, "log")}, paths as in docs/parameters.md
+    measured    n x 2: time (s) and value (SI units), in the order of time
+    series      front, height, centre_of_mass_x, _y, _z, kinetic, potential, maximum_speed; or a function f(world, spacing) -> float
+    start       f(context, scene) -> World, for particles or walls that a scene cannot have; None: context.world(scene)
+    settings    {path: value} that all runs have
+    seconds     simulated time of a run; None: to the last measured time
+    shift       (low, high), s: the clock of the measurement may be behind that of the run by as much, which is fitted, too
+    method      brent (one parameter), nelder-mead (several) or differential evolution; None: by the number of parameters
+    evaluations at most about as many runs; tolerance: of the values, as a share of the range
+    folder      of the kept runs
+    jobs        processes at the same time, where the method allows; None: as many as cores
+    """
+    if isinstance(scene, (str, os.PathLike)):
+        try:
+            scene = json.loads(pathlib.Path(scene).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise FitError(f"the scene {scene} cannot be read: {error}") from error
+    for part in NOT_OF_A_WORLD:
+        if scene.get(part) and start is None:
+            raise FitError(f"the scene has {part}, which a fit cannot make by itself: give start, a function that makes the world")
+    scene = {part: scene[part] for part in OF_A_WORLD if part in scene}
+    ranges = [Range(name, *values) for name, values in parameters.items()]
+    if not ranges:
+        raise FitError("no parameter is to be found: name one with its range")
+    measured = np.array(measured, dtype=float)
+    if measured.ndim != 2 or measured.shape[1] != 2 or len(measured) < len(ranges) + 2 or not np.isfinite(measured).all():
+        raise FitError(f"the measured curve has the shape {measured.shape}: give finite times and values, at least {len(ranges) + 2} rows of two")
+    if (np.diff(measured[:, 0]) <= 0).any() or measured[0, 0] + shift[0] < 0:
+        raise FitError("the measured times must increase, and be at least 0 s with the shift added")
+    method = method or ("brent" if len(ranges) == 1 else "nelder-mead")
+    if method not in METHODS:
+        raise FitError(f"method {method!r} is none of {', '.join(METHODS)}")
+    if method == "brent" and len(ranges) > 1:
+        raise FitError(f"brent finds one parameter, not {len(ranges)}: use nelder-mead or differential evolution")
+    if callable(series):
+        series = _named(series)
+    elif series not in SERIES:
+        _function(series, "series")
+    seconds = float(measured[-1, 0] + shift[1]) if seconds is None else float(seconds)
+    if seconds < measured[-1, 0] + shift[1]:
+        raise FitError(f"a run of {seconds:g} s ends before the measured curve with its shift, {measured[-1, 0] + shift[1]:g} s: raise seconds")
+    job = {"scene": scene, "settings": dict(settings or {}), "series": series, "start": _named(start) if callable(start) else start, "backend": backend,
+           "seconds": seconds, "frame": frame, "threads": 0}
+    search = Search(job, ranges, measured, tuple(shift), folder, jobs or os.cpu_count() or 1)
+    try:
+        _search(search, method, evaluations, tolerance, seed)
+        return Fit(search)
+    finally:
+        search.close()
+
+
+KEYS = {"scene", "parameters", "measured", "series", "start", "settings", "seconds", "shift", "method", "evaluations", "tolerance", "folder", "jobs",
+        "backend", "frame", "seed", "label", "unit"}
+
+
+def fit_file(path):
+    """A Fit of FIT.json, whose paths are relative to it; writes result.json, points.csv and fit.png into its folder."""
+    path = pathlib.Path(path)
+    try:
+        asked = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise FitError(f"{path} cannot be read: {error}") from error
+    for key in asked:
+        if key not in KEYS:
+            raise FitError(f"{path}: {key} is no key of a fit; the keys are {', '.join(sorted(KEYS))}")
+    for key in ("scene", "parameters", "measured", "series"):
+        if key not in asked:
+            raise FitError(f"{path} lacks {key}")
+    here = path.resolve().parent
+    if isinstance(asked["scene"], str):
+        asked["scene"] = here / asked["scene"]
+    for key in ("series", "start"):
+        if ":" in (asked.get(key) or ""):
+            asked[key] = str(here / asked[key])
+    curve = asked.pop("measured")
+    if isinstance(curve, dict):
+        try:
+            with open(here / curve["file"], encoding="utf-8") as file:
+                rows = [line.split(",") for line in file if line.strip() and not line.startswith("#")]
+            columns = curve.get("columns", [0, 1])
+            numbers = rows[0 if _number(rows[0][0]) else 1:]
+            curve = [[float(row[columns[0]]) * curve.get("time", 1), float(row[columns[1]]) * curve.get("value", 1)] for row in numbers]
+        except (OSError, KeyError, ValueError, IndexError) as error:
+            raise FitError(f"{path}: the measured curve cannot be read: {error!r}; it needs file, columns [time, value], and factors time and value "
+                           "to s and SI units") from error
+    try:
+        parameters = {name: (r["from"], r["to"], r.get("scale", "linear")) for name, r in asked.pop("parameters").items()}
+    except (TypeError, KeyError, AttributeError) as error:
+        raise FitError(f'{path}: parameters are {{"fluid.viscosity": {{"from": 1e-6, "to": 1e-2, "scale": "log"}}}}') from error
+    label, unit = asked.pop("label", asked["series"] if isinstance(asked["series"], str) else ""), asked.pop("unit", "")
+    asked["folder"] = here / asked.get("folder", path.stem)
+    found = fit(asked.pop("scene"), parameters, curve, asked.pop("series"), **asked)
+    found.save(asked["folder"])
+    try:
+        found.plot(asked["folder"] / "fit.png", label, unit)
+    except ImportError:
+        print("there is no plot, because Matplotlib is not installed: python3-matplotlib", file=sys.stderr)
+    return found
+
+
+def _number(text):
+    try:
+        float(text)
+        return True
+    except ValueError:
+        return False
+
+
+def main(arguments):
+    if len(arguments) != 1 or arguments[0] in ("-h", "--help"):
+        print("usage: python3 -m rivulet.fit FIT.json\n\nFinds the parameters of a scene that reproduce a measured curve; docs/fitting.md has the keys.")
+        return 0 if arguments in (["-h"], ["--help"]) else 2
+    try:
+        print(fit_file(arguments[0]))
+    except (FitError, ImportError, RuntimeError) as error:
+        print(f"rivulet.fit: {error}", file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
+    except KeyboardInterrupt:
+        print("rivulet.fit: interrupted; the same command goes on with the runs that ended", file=sys.stderr)
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# run.sh BUILD: data sets of recordings, read by h5py, zarr and xarray: the same numbers as in CSV files of the same run, bit for bit; and the
+# pages' example, a sweep whose runs are loaded together. Exit 77: a reader is not installed, and RIVULET_TEST_DEVICES does not say that all must be.
+set -eu
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+root="$here/../../.."
+program="$(cd "$1" && pwd)/bin/rivulet"
+/usr/bin/python3 -c 'import h5py, netCDF4, numpy, xarray, zarr' 2>/dev/null || {
+    echo "skipped: python3-h5py, python3-netcdf4, python3-xarray or python3-zarr is not installed"
+    [ -n "${RIVULET_TEST_DEVICES:-}" ] && exit 1
+    exit 77
+}
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+export PYTHONDONTWRITEBYTECODE=1
+# Water that falls from a block and from a tap: frames differ in their number of particles.
+cat >fall.json <<'END'
+{"name": "fall", "doc": "A column falls.", "fluid": {"spacing": 0.02, "viscosity": 2e-6, "box": {"max": [0.4, 1, 0.4]},
+ "blocks": [{"min": [0.06, 0.6, 0.06], "max": [0.22, 0.8, 0.18]}]},
+ "emitters": [{"position": [0.3, 0.4, 0.3], "direction": [0, -1, 0], "speed": 1, "size": [0.06, 0.06, 0.06]}]}
+END
+sed 's/"fall"/"column"/; s/"emitters".*/"duration": 1}/' fall.json >column.json
+for scene in fall column; do "$program" run $scene.json --no-render --frames 15 --backend cpu --record $scene.rrec --out stats >log 2>&1 || { cat log; exit 1; }; done
+for format in hdf5 zarr; do
+    "$program" export fall.rrec --format $format --out sets >log 2>&1 || { cat log; exit 1; }
+    "$program" export column.json --format $format --seconds 0.25 --backend cpu --out scene >log 2>&1 || { cat log; exit 1; }
+done
+"$program" export column.rrec --format hdf5 --every 3 --out sets >log 2>&1
+"$program" export fall.json --format csv --seconds 0.25 --backend cpu --out csv >log 2>&1
+"$program" run column.json --no-render --frames 50 --backend cpu --set fluid.foam.most=2000 --set fluid.foam.trappedAir=100000 --record foam.rrec --out stats >log 2>&1 || { cat log; exit 1; }
+"$program" export foam.rrec --format zarr --out sets >log 2>&1
+/usr/bin/python3 "$here/check.py"
+
+# The sweep of docs/datasets.md with 20 runs, each as a task of its own.
+for name in dam.json SWEEP.json load.py; do
+    awk -v name="file=$name" '/^```/ { inside = $2 == name; next } inside' "$root/docs/datasets.md" >$name
+    [ -s $name ] || { echo "docs/datasets.md no longer has a block $name"; exit 1; }
+done
+/usr/bin/python3 - "$program" 20 <<'SWEEP'
+import json, os, subprocess, sys
+import numpy as np
+from scipy.stats import qmc
+sweep = json.load(open("SWEEP.json"))
+shares = qmc.LatinHypercube(len(sweep["parameters"]), seed=sweep["seed"]).random(int(sys.argv[2]))
+for task, row in enumerate(shares):
+    folder = f"runs/tasks/{task}"
+    os.makedirs(folder)
+    settings = []
+    for (key, r), u in zip(sweep["parameters"].items(), row):
+        value = r["from"] * (r["to"] / r["from"]) ** u if r.get("scale") == "log" else r["from"] + u * (r["to"] - r["from"])
+        settings += ["--set", f"{key}={value:.6g}"]
+    for command in sweep["commands"]:
+        words = command.replace("{task}", folder).split()
+        subprocess.run([sys.argv[1], *words, *(settings if words[0] == "run" else [])], check=True, capture_output=True)
+SWEEP
+/usr/bin/python3 load.py | tee said
+grep -Eq '^\(20, 2\) \(20, 15, 1500, 3\) -0\.[5-9]' said || { echo "the runs are not those of the page"; exit 1; }

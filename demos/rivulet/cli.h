@@ -68,6 +68,8 @@ class ArgumentReader {
     // Parses. A value is the exit code to leave with: 0 after --help, 2 after invalid arguments (the error and the nearest valid option
     // are on stderr). No value: the verb runs.
     std::optional<int> read(const Arguments& arguments);
+    // The same without a message. False: --help was printed. Error (badInput): invalid arguments, and the nearest valid option.
+    Result<bool> parse(const Arguments& arguments);
 
   private:
     struct Impl;

@@ -19,6 +19,7 @@ struct RunOptions {
     std::string device;             // of cl, as ClOptions::device
     std::string cooperate = "off";  // a name in plans(), or auto
     bool render = true;
+    bool headless = false;  // no window
     bool explain = false;
     std::optional<int> frames;       // number of frames; empty: the loop's own default
     int width = 1280, height = 720;  // pixels
@@ -39,6 +40,10 @@ struct OutputNames {
     std::string picturePrefix;  // "out/dam_break", of out/dam_break_0000.png
 };
 OutputNames namesOf(const RunOptions& options);
+
+// What the arguments of `rivulet run` request, with the scene read and all values checked; nothing is opened or written. Empty: --help was
+// printed. Error (badInput): an argument, the scene, or values that contradict each other.
+Result<std::optional<RunOptions>> readRun(const std::vector<std::string>& arguments);
 
 // Each returns an ExitCode.
 int runHeadless(const RunOptions& options);

@@ -122,7 +122,7 @@ Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, co
     return std::optional(std::move(*file));
 }
 
-int runVerb(const Arguments& arguments) {
+Result<std::optional<RunOptions>> readRun(const std::vector<std::string>& arguments) {
     ArgumentReader reader(
         "run", "Runs a scene in a window. Without a display, or with --headless, it writes a video, images and statistics instead.");
     std::string scene, size;
@@ -130,12 +130,12 @@ int runVerb(const Arguments& arguments) {
     std::vector<std::string> assignments;
     std::string preset;
     std::vector<std::string> stills;
-    bool headless = false, noRender = false;
+    bool noRender = false;
     std::optional<double> seconds;
     reader.positional("SCENE", "a scene file, or the name of a scene in 'rivulet list scenes'", scene, true);
     reader.option("--backend", "NAME", "backend of the simulation: auto, cpu, gl or cl; default: auto", options.backend);
     reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", options.device);
-    reader.flag("--headless", "open no window; write a video, images and statistics", headless);
+    reader.flag("--headless", "open no window; write a video, images and statistics", options.headless);
     reader.flag("--no-render", "draw nothing; simulate and write statistics", noRender);
     reader.option("--frames", "N", "number of frames; 60 frames are one second of video", options.frames, 0, kMostFrames);
     reader.option("--seconds", "S", "simulated time, s; headless default: the scene's duration", seconds, 0,
@@ -157,40 +157,41 @@ int runVerb(const Arguments& arguments) {
                 options.explain);
     reader.option("--preset", "NAME", "a named set of values in the scene file, applied before --set", preset);
     reader.option("--set", "PATH=VALUE", "set a parameter, for example --set fluid.spacing=0.02; may be repeated", assignments);
-    if (std::optional<int> code = reader.read(arguments)) return *code;
+    const Result<bool> read = reader.parse(arguments);
+    if (!read) return read.error();
+    if (!*read) return std::optional<RunOptions>();
 
-    if (Status sense = settleBackend(options.backend, "auto", options.device); !sense) return report(sense.error());
+    if (Status sense = settleBackend(options.backend, "auto", options.device); !sense) return sense.error();
     std::vector<std::string> cooperations = plans().names();
     cooperations.emplace_back("auto");
-    if (Status known = checkWord("plan", options.cooperate, cooperations); !known) return report(known.error());
+    if (Status known = checkWord("plan", options.cooperate, cooperations); !known) return known.error();
     options.sized = !size.empty();
     Result<std::pair<int, int>> pixels = parseSize(options.sized ? size : "1280x720");
-    if (!pixels) return report(pixels.error());
+    if (!pixels) return pixels.error();
     std::tie(options.width, options.height) = *pixels;
     if (noRender && !options.video.empty())
-        return report(badInput("--video cannot be used with --no-render, which draws nothing; leave one of them out"));
+        return badInput("--video cannot be used with --no-render, which draws nothing; leave one of them out");
 
-    if (noRender && !stills.empty())
-        return report(badInput("--still cannot be used with --no-render, which draws nothing; leave one of them out"));
+    if (noRender && !stills.empty()) return badInput("--still cannot be used with --no-render, which draws nothing; leave one of them out");
     Result<SceneFile> loaded = loadScene(scene, assignments, preset);
-    if (!loaded) return report(loaded.error());
+    if (!loaded) return loaded.error();
     for (const std::string& still : stills) {
         Result<int> frame = frameAt(still, *loaded);
-        if (!frame) return report(frame.error());
+        if (!frame) return frame.error();
         options.stills.insert(*frame);
     }
     if (loaded->budget.frameMs > 0 && (!options.save.empty() || !options.resume.empty()))
-        return report(
-            badInput("--save and --resume cannot be used with a budget, which chooses method and spacing at each start; add --set "
-                     "budget.frameMs=0 and set fluid.method and fluid.spacing"));
+        return badInput(
+            "--save and --resume cannot be used with a budget, which chooses method and spacing at each start; add --set "
+            "budget.frameMs=0 and set fluid.method and fluid.spacing");
     if (!loaded->flow.empty() && (!options.save.empty() || !options.resume.empty()))
-        return report(
-            badInput(fmt::format("a state file cannot store flow on skins, and {} has some; leave --save and --resume out", loaded->name)));
+        return badInput(
+            fmt::format("a state file cannot store flow on skins, and {} has some; leave --save and --resume out", loaded->name));
     if (!loaded->flow.empty() && (!options.record.empty() || !options.replay.empty()))
-        return report(badInput(
-            fmt::format("a recording cannot store flow on skins, and {} has some; leave --record and --replay out", loaded->name)));
+        return badInput(
+            fmt::format("a recording cannot store flow on skins, and {} has some; leave --record and --replay out", loaded->name));
     if (!options.replay.empty())
-        if (Status sense = checkReplay(options, noRender); !sense) return report(sense.error());
+        if (Status sense = checkReplay(options, noRender); !sense) return sense.error();
     options.scene = std::move(*loaded);
     if (!options.replay.empty()) {
         options.scene.budget.frameMs = 0;  // nothing is simulated, so there is no time to limit
@@ -200,18 +201,26 @@ int runVerb(const Arguments& arguments) {
     options.render = !noRender;
     if (seconds) {
         Result<int> frames = framesOf(*seconds, options.scene, "--seconds");
-        if (!frames) return report(frames.error());
+        if (!frames) return frames.error();
         options.frames = *frames;
     }
-    options.log = stderrLog();
+    return std::optional(std::move(options));
+}
 
-    if (!headless && !noRender && !hasDisplay()) {
+int runVerb(const Arguments& arguments) {
+    Result<std::optional<RunOptions>> read = readRun(arguments);
+    if (!read) return report(read.error());
+    if (!*read) return kDone;
+    RunOptions options = std::move(**read);
+    options.log = stderrLog();
+    if (!options.headless && options.render && !hasDisplay()) {
         options.log.notice("no display found: running headless");
-        headless = true;
+        options.headless = true;
     }
-    if (!options.stills.empty()) headless = true;
-    if (Status apart = checkFiles(options, headless || noRender); !apart) return report(apart.error());
-    return headless || noRender ? runHeadless(options) : runWindow(options);
+    if (!options.stills.empty()) options.headless = true;
+    const bool windowless = options.headless || !options.render;
+    if (Status apart = checkFiles(options, windowless); !apart) return report(apart.error());
+    return windowless ? runHeadless(options) : runWindow(options);
 }
 
 }  // namespace rivulet

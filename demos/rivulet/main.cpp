@@ -33,6 +33,7 @@ Table<Verb> verbs() {
         {"validate", "compare the simulation with experiments, published data and analytic solutions", validateVerb},
         {"chart", "measure speed against accuracy for all methods and write the result as a page", chartVerb},
         {"export", "run a scene and write its particles or its surface to files", exportVerb},
+        {"join", "make one video of the images that pieces of a recording were drawn to", joinVerb},
     };
     return {rows};
 }

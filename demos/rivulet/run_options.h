@@ -22,12 +22,14 @@ struct RunOptions {
     bool headless = false;  // no window
     bool explain = false;
     std::optional<int> frames;       // number of frames; empty: the loop's own default
+    std::optional<int> first;        // the first frame, if only a piece of a recording is drawn, which ends before `frames`
     int width = 1280, height = 720;  // pixels
     bool sized = false;              // --size was given
     std::string out = "out";         // output folder
     std::string video;               // file; empty: out/NAME.mp4
     std::string stats;               // file; empty: out/stats.json, or none in the window
     std::set<int> stills;            // frame numbers to draw; empty: a video of all frames, and six images
+    bool images = false;             // draw an image of each frame, and no video
     std::string save, resume;        // state files; empty: none
     std::string record, replay;      // recording files; empty: none
     std::string trace;               // timeline file; empty: none

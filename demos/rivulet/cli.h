@@ -35,6 +35,7 @@ int benchVerb(const Arguments& arguments);
 int validateVerb(const Arguments& arguments);
 int chartVerb(const Arguments& arguments);
 int exportVerb(const Arguments& arguments);
+int sweepVerb(const Arguments& arguments);
 int joinVerb(const Arguments& arguments);
 
 // Prints "rivulet: MESSAGE" on stderr, made fit for a terminal. Returns kBadUse for Fault::badInput, else kFailed.

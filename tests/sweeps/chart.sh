@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # chart.sh, called by run.sh: the quick chart of speed against accuracy as a sweep on Slurm and on Dask: the same in all but times. CASES in the
-# environment selects cases.
+# environment selects cases, KEEP names a folder that keeps both pages.
 set -eu
 if [ "${1:-}" = inside ]; then
     "$RIVULET" sweep chart.json --output chart_slurm --with slurm
@@ -10,13 +10,7 @@ fi
 # shellcheck disable=SC2086  # names of cases
 "$RIVULET" chart ${CASES:-} --quick --sweep chart.json
 bash "$HERE/cluster.sh" bash "$HERE/chart.sh" inside
-/usr/bin/python3 - <<'PYTHON'
-import os
-from distributed import Client, LocalCluster
-from rivulet import sweep
-with LocalCluster(n_workers=2, threads_per_worker=1, processes=False, host="127.0.0.1", dashboard_address=None) as cluster, Client(cluster) as client:
-    sweep.run("chart.json", client, "chart_dask", program=os.environ["RIVULET"])
-PYTHON
+/usr/bin/python3 "$HERE/dask_sweeps.py" chart.json chart_dask
 /usr/bin/python3 "$HERE/same_tables.py" chart_slurm/results.csv chart_dask/results.csv
 for engine in slurm dask; do
     # shellcheck disable=SC2086
@@ -29,5 +23,5 @@ for row in csv.reader(open(sys.argv[1])):
 done
 cmp slurm.txt dask.txt
 [ -s slurm.txt ]
-cp page_slurm/*.svg page_slurm/*.csv page_dask/speed_accuracy.csv "${KEEP:-page_slurm}" 2>/dev/null || true
+[ -z "${KEEP:-}" ] || cp -r page_slurm page_dask "$KEEP"
 echo "the charts of Slurm and of Dask are the same in all but times"

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""dask_sweeps.py, called by dask.sh: sweeps by rivulet.sweep on a cluster of two processes on loopback."""
+"""dask_sweeps.py [SWEEP.json DIR], called by dask.sh and chart.sh: sweeps by rivulet.sweep on a Dask cluster on loopback; without arguments
+those of dask.sh."""
 import os
 import pathlib
 import signal
+import sys
 import threading
 import time
 
@@ -21,8 +23,15 @@ def kill_a_worker(cluster, folder):
     pathlib.Path("before.txt").write_text("".join((path / "process").read_text() for path in ended))
 
 
-if __name__ == "__main__":
-    with LocalCluster(n_workers=2, threads_per_worker=2, processes=True, host="127.0.0.1", dashboard_address=None) as cluster, Client(cluster) as client:
+def local_cluster(threads):
+    return LocalCluster(n_workers=2, threads_per_worker=threads, processes=True, host="127.0.0.1", dashboard_address=None)
+
+
+if __name__ == "__main__" and len(sys.argv) > 1:
+    with local_cluster(threads=1) as cluster, Client(cluster) as client:
+        sweep.run(sys.argv[1], client, sys.argv[2], program=os.environ["RIVULET"])
+elif __name__ == "__main__":
+    with local_cluster(threads=2) as cluster, Client(cluster) as client:
         table = sweep.run("hundred.json", client, "dask", program=os.environ["RIVULET"])
         assert len(table["task"]) == 100 and table["energy.kinetic"].dtype == float and table["fluid.method"][0] in ("pbf", "dfsph", "wcsph")
         assert all(sweep.is_time(name) for name in list(table)[-3:])

@@ -12,6 +12,10 @@ chmod 755 "$folder"
 started=()
 finish() {
     scancel --quiet --user=root 2>/dev/null || true
+    for _ in $(seq 50); do  # until its jobs have been killed
+        [ -n "$(squeue --noheader 2>/dev/null)" ] || break
+        sleep 0.2
+    done
     for process in "${started[@]}"; do kill "$process" 2>/dev/null || true; done
     for process in "${started[@]}"; do wait "$process" 2>/dev/null || true; done
     rm -rf "$folder"

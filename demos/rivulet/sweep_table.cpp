@@ -52,7 +52,7 @@ void addNumbers(const Json::Value& value, std::string_view text, const std::stri
     } else if (value.isArray() || value.isObject()) {
         for (auto each = value.begin(); each != value.end(); ++each) {
             const std::string part = value.isArray() ? std::to_string(each.index()) : each.name();
-            addNumbers(*each, text, name.empty() ? part : name + '.' + part, time || isTime(part), numbers);
+            addNumbers(*each, text, name.empty() ? part : fmt::format("{}.{}", name, part), time || isTime(part), numbers);
         }
     }
 }
@@ -70,7 +70,12 @@ class ResultTable {
   public:
     explicit ResultTable(const Sweep& sweep) : sweep_(sweep) {
         fixed_ = "task";
-        for (const SweepParameter& parameter : sweep.parameters) fixed_ += ',' + tableCell(parameter.name);
+        taken_.reserve(1 + sweep.parameters.size());
+        taken_.emplace_back("task");
+        for (const SweepParameter& parameter : sweep.parameters) {
+            fixed_ += ',' + tableCell(parameter.name);
+            taken_.push_back(parameter.name);
+        }
     }
 
     // Takes the lines of a table of the same sweep that are among `ended`. Others would leave columns that no task has: nothing is taken.
@@ -100,9 +105,8 @@ class ResultTable {
     void add(size_t task, const std::vector<std::pair<std::string, std::string>>& numbers) {
         std::map<std::string, std::string> row;
         for (const auto& [name, number] : numbers) {
-            const bool taken =
-                std::any_of(sweep_.parameters.begin(), sweep_.parameters.end(), [&](const SweepParameter& p) { return p.name == name; });
-            row.emplace(taken || name == "task" ? "stats." + name : name, number);
+            const bool taken = std::find(taken_.begin(), taken_.end(), name) != taken_.end();
+            row.emplace(taken ? "stats." + name : name, number);
         }
         const size_t before = columns_.size();
         const std::vector<std::string> old(columns_.begin(), columns_.end());
@@ -140,7 +144,8 @@ class ResultTable {
     }
 
     const Sweep& sweep_;
-    std::string fixed_;  // the columns before the numbers
+    std::string fixed_;               // the columns before the numbers, as text
+    std::vector<std::string> taken_;  // their names
     std::set<std::string, ColumnOrder> columns_;
     std::map<size_t, std::string> lines_;
 };

@@ -133,20 +133,26 @@ void ArgumentReader::exclude(const std::string& name, const std::string& other) 
 void ArgumentReader::footer(const std::string& text) { impl_->app.footer(text); }
 
 std::optional<int> ArgumentReader::read(const Arguments& arguments) {
+    const Result<bool> read = parse(arguments);
+    if (!read) return report(read.error());
+    return *read ? std::nullopt : std::optional<int>(kDone);
+}
+
+Result<bool> ArgumentReader::parse(const Arguments& arguments) {
     CLI::App& app = impl_->app;
-    auto refuse = [&app](const std::string& why) { return report(badInput(fmt::format("{} (see '{} --help')", why, app.get_name()))); };
+    auto refuse = [&app](const std::string& why) { return badInput(fmt::format("{} (see '{} --help')", why, app.get_name())); };
     try {
         app.parse(Arguments(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForHelp&) {
         fmt::print("{}", app.help());
-        return kDone;
+        return false;
     } catch (const CLI::ParseError& error) {
         // After an unknown option, CLI11 may report its value as a missing or surplus argument: the unknown option is reported first.
         Status extras = checkExtras(app);
         return refuse(extras ? sentence(error.what()) : extras.error().message);
     }
     if (Status extras = checkExtras(app); !extras) return refuse(extras.error().message);
-    return std::nullopt;
+    return true;
 }
 
 Result<std::pair<int, int>> parseSize(const std::string& text) {

@@ -35,6 +35,8 @@ int benchVerb(const Arguments& arguments);
 int validateVerb(const Arguments& arguments);
 int chartVerb(const Arguments& arguments);
 int exportVerb(const Arguments& arguments);
+int sweepVerb(const Arguments& arguments);
+int joinVerb(const Arguments& arguments);
 
 // Prints "rivulet: MESSAGE" on stderr, made fit for a terminal. Returns kBadUse for Fault::badInput, else kFailed.
 int report(const Error& error);
@@ -68,6 +70,8 @@ class ArgumentReader {
     // Parses. A value is the exit code to leave with: 0 after --help, 2 after invalid arguments (the error and the nearest valid option
     // are on stderr). No value: the verb runs.
     std::optional<int> read(const Arguments& arguments);
+    // The same without a message. False: --help was printed. Error (badInput): invalid arguments, and the nearest valid option.
+    Result<bool> parse(const Arguments& arguments);
 
   private:
     struct Impl;

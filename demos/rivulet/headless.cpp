@@ -29,12 +29,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The frames that are written as PNG: the first, the last, and four at equal distances between them.
-std::set<int> pictureFrames(int frames) {
+// The frames from `first` to before `end` that are written as PNG: the first, the last, and four at equal distances between them.
+std::set<int> pictureFrames(int first, int end) {
     constexpr int kPictures = 6;
     std::set<int> chosen;
-    for (int k = 0; k < kPictures && frames > 0; ++k)
-        chosen.insert(static_cast<int>(std::lround(static_cast<double>(frames - 1) * k / (kPictures - 1))));
+    for (int k = 0; k < kPictures && end > first; ++k)
+        chosen.insert(first + static_cast<int>(std::lround(static_cast<double>(end - first - 1) * k / (kPictures - 1))));
     return chosen;
 }
 
@@ -51,7 +51,7 @@ struct Outputs : OutputNames {
         for (const std::string& file : {options.save, options.trace})
             if (!file.empty())
                 if (Status writable = checkWritable(file); !writable) return writable.error();
-        if (!options.render || !options.stills.empty()) return to;
+        if (!options.render || options.images || !options.stills.empty()) return to;
         Result<VideoWriter> video = VideoWriter::open(to.video, options.width, options.height, kFramesPerSecond);
         if (!video) return video.error();
         to.writer = std::move(*video);
@@ -111,7 +111,9 @@ struct Loop {
     }
 
     Status run(int frames) {
-        const std::set<int> kept = options.stills.empty() ? pictureFrames(frames) : options.stills;
+        const int first = options.first.value_or(0);
+        const std::set<int> some = options.stills.empty() ? pictureFrames(first, frames) : options.stills;
+        const auto kept = [&](int f) { return options.images || some.contains(f); };
         Progress progress(options.scene.name);
         double now = 0;  // s, the simulated time that is drawn
         if (options.render)
@@ -122,8 +124,8 @@ struct Loop {
         // With the plan `behind`, a step that runs while the last image is drawn is drawn too, so that --save writes the state of the last
         // image.
         const auto continues = [&] { return !graceful.interrupted() || (work.started() && work.plan() == Plan::behind); };
-        for (int f = 0; f < frames && continues(); ++f) {
-            const bool shown = options.render && (to.writer || kept.contains(f));
+        for (int f = first; f < frames && continues(); ++f) {
+            const bool shown = options.render && (to.writer || kept(f));
             if (session.replaying() != nullptr && !shown) continue;
             if (session.replaying() != nullptr) session.seek(static_cast<size_t>(f));
             Clock::time_point start = Clock::now();
@@ -152,7 +154,7 @@ struct Loop {
                 if (recorder) recorder->transferred(painter.upload.facts());
                 if (to.writer)
                     if (Status added = to.writer->add(*pixels); !added) return added;
-                if (kept.contains(f)) {
+                if (kept(f)) {
                     if (Status written = writePng(fmt::format("{}_{:04}.png", to.picturePrefix, f), *pixels, options.width, options.height);
                         !written)
                         return written;
@@ -163,7 +165,8 @@ struct Loop {
             if (options.render && !shown)  // a skin's maps accumulate, so they are drawn in every frame
                 if (Status wet = session.flows().draw(); !wet) return wet.error();
             if (recorder) recorder->drawn(renderMs, msSince(start), drawn);
-            progress.show(static_cast<double>(f + 1) / frames, fmt::format("{:.2f} s, {:.0f} ms a frame", now, msSince(start)));
+            progress.show(static_cast<double>(f + 1 - first) / (frames - first),
+                          fmt::format("{:.2f} s, {:.0f} ms a frame", now, msSince(start)));
         }
         work.drop();
         return ok();
@@ -256,6 +259,9 @@ int runHeadless(const RunOptions& options) {
         if (!options.stills.empty() && *options.stills.rbegin() >= recorded)
             return report(badInput(fmt::format("--still: {} ends with frame {}, at {:.3g} s; use an earlier time", options.replay,
                                                recorded - 1, recorded * frameSeconds(options.scene))));
+        if (options.first && frames > recorded)
+            return report(badInput(fmt::format("--frames {}:{}: {} has {} frames; end at {} or before", *options.first, frames,
+                                               options.replay, recorded, recorded)));
         frames = std::min(frames, recorded);
     }
     if (traced) {

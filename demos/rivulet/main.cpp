@@ -6,16 +6,19 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/core/descriptor.h"
 #include "engine/core/exception_error.h"
+#include "engine/core/jobs.h"
 #include "engine/core/new_file.h"
 #include "engine/core/table.h"
 #include "fluid/scene/scene_file.h"
@@ -33,6 +36,8 @@ Table<Verb> verbs() {
         {"validate", "compare the simulation with experiments, published data and analytic solutions", validateVerb},
         {"chart", "measure speed against accuracy for all methods and write the result as a page", chartVerb},
         {"export", "run a scene and write its particles or its surface to files", exportVerb},
+        {"sweep", "run a command for each combination of parameter values, as independent tasks", sweepVerb},
+        {"join", "make one video of the images that pieces of a recording were drawn to", joinVerb},
     };
     return {rows};
 }
@@ -87,6 +92,16 @@ int reportThrown() noexcept {
 // Before the variables of libraries are initialised, which takes memory too (CLI11's validators).
 [[gnu::constructor(101)]] void reportFromTheStart() { std::set_terminate(endAtOnce); }
 
+// The value of RIVULET_THREADS: the threads of parallel loops.
+Result<int> threadsOf(std::string_view text) {
+    int threads = 0;
+    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), threads);
+    constexpr int kMost = 1024;
+    if (wrong == std::errc() && end == text.data() + text.size() && threads >= 1 && threads <= kMost) return threads;
+    return badInput(
+        fmt::format("the environment variable RIVULET_THREADS must be a number of threads from 1 to {}, but is '{}'", kMost, text));
+}
+
 int dispatch(const Arguments& words) {
     if (words.empty()) {
         (void)std::fputs(helpText().c_str(), stderr);
@@ -110,6 +125,14 @@ int dispatch(const Arguments& words) {
         }
         return report(checkWord("verb", words[0], names).error());
     }
+    // Loops take part of the processors, where several programs share them.
+    std::optional<Workers> workers;
+    if (const char* text = std::getenv("RIVULET_THREADS"); text != nullptr && *text != '\0') {
+        const Result<int> threads = threadsOf(text);
+        if (!threads) return report(threads.error());
+        workers.emplace(*threads);
+    }
+    const JobsScope scope(workers ? workers->jobs() : Jobs{});
     return verb->run({words.begin() + 1, words.end()});
 }
 

@@ -19,14 +19,17 @@ struct RunOptions {
     std::string device;             // of cl, as ClOptions::device
     std::string cooperate = "off";  // a name in plans(), or auto
     bool render = true;
+    bool headless = false;  // no window
     bool explain = false;
     std::optional<int> frames;       // number of frames; empty: the loop's own default
+    std::optional<int> first;        // the first frame, if only a piece of a recording is drawn, which ends before `frames`
     int width = 1280, height = 720;  // pixels
     bool sized = false;              // --size was given
     std::string out = "out";         // output folder
     std::string video;               // file; empty: out/NAME.mp4
     std::string stats;               // file; empty: out/stats.json, or none in the window
     std::set<int> stills;            // frame numbers to draw; empty: a video of all frames, and six images
+    bool images = false;             // draw an image of each frame, and no video
     std::string save, resume;        // state files; empty: none
     std::string record, replay;      // recording files; empty: none
     std::string trace;               // timeline file; empty: none
@@ -39,6 +42,10 @@ struct OutputNames {
     std::string picturePrefix;  // "out/dam_break", of out/dam_break_0000.png
 };
 OutputNames namesOf(const RunOptions& options);
+
+// What the arguments of `rivulet run` request, with the scene read and all values checked; nothing is opened or written. Empty: --help was
+// printed. Error (badInput): an argument, the scene, or values that contradict each other.
+Result<std::optional<RunOptions>> readRun(const std::vector<std::string>& arguments);
 
 // Each returns an ExitCode.
 int runHeadless(const RunOptions& options);

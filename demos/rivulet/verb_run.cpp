@@ -9,6 +9,7 @@
 #include "demos/rivulet/outputs.h"
 #include "demos/rivulet/run_options.h"
 #include "fluid/render/backend.h"
+#include "fluid/render/renderers.h"
 #include "fluid/scene/scene_inputs.h"
 #include "fluid/session/cooperation.h"
 #include "fluid/session/session.h"
@@ -34,6 +35,34 @@ Result<int> frameAt(const std::string& text, const SceneFile& scene) {
     return framesOf(at, scene, fmt::format("--still {}", text));
 }
 
+// "120": a number of frames; "30:60": the frames from 30 to before 60 of a recording.
+Status readFrames(const std::string& text, RunOptions& options) {
+    const size_t colon = text.find(':');
+    const auto number = [](std::string_view digits) -> std::optional<int> {
+        int value = -1;
+        const auto [end, wrong] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        return wrong == std::errc() && end == digits.data() + digits.size() && value >= 0 && value <= kMostFrames ? std::optional(value)
+                                                                                                                  : std::nullopt;
+    };
+    if (colon != std::string::npos) {
+        options.first = number(std::string_view(text).substr(0, colon));
+        options.frames = number(std::string_view(text).substr(colon + 1));
+        if (!options.first || !options.frames || *options.first >= *options.frames)
+            return badInput(
+                fmt::format("--frames must be a number of frames, or the first frame of a piece and the one after its last, for "
+                            "example 30:60, but is '{}'",
+                            text));
+        if (options.replay.empty())
+            return badInput(
+                fmt::format("--frames {} draws a piece of a recording; add --replay FILE.rrec, or give a number of frames", text));
+        return ok();
+    }
+    options.frames = number(text);
+    if (options.frames) return ok();
+    return badInput(fmt::format("--frames must be a whole number from 0 to {}, or a piece of a recording, for example 30:60, but is '{}'",
+                                kMostFrames, text));
+}
+
 // A replay simulates nothing, so that it has no statistics and no state: options that need them are refused.
 Status checkReplay(const RunOptions& options, bool noRender) {
     for (const auto& [name, used] : {std::pair("--record", !options.record.empty()), std::pair("--save", !options.save.empty()),
@@ -51,7 +80,7 @@ Status checkFiles(const RunOptions& options, bool headless) {
     std::vector<NamedFile> outputs = {
         {"--stats", statistics ? to.stats : ""}, {"--trace", options.trace}, {"--save", options.save}, {"--record", options.record}};
     if (headless && options.render) {
-        outputs.push_back({"--video", options.stills.empty() ? to.video : ""});
+        outputs.push_back({"--video", options.stills.empty() && !options.images ? to.video : ""});
         outputs.push_back({"--out", to.picturePrefix + "_*.png", true});
     }
     std::vector<NamedFile> inputs = {{"--resume", options.resume}, {"--replay", options.replay}};
@@ -122,22 +151,23 @@ Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, co
     return std::optional(std::move(*file));
 }
 
-int runVerb(const Arguments& arguments) {
+Result<std::optional<RunOptions>> readRun(const std::vector<std::string>& arguments) {
     ArgumentReader reader(
         "run", "Runs a scene in a window. Without a display, or with --headless, it writes a video, images and statistics instead.");
-    std::string scene, size;
+    std::string scene, size, frames, renderer;
     RunOptions options;
     std::vector<std::string> assignments;
     std::string preset;
     std::vector<std::string> stills;
-    bool headless = false, noRender = false;
+    bool noRender = false;
     std::optional<double> seconds;
     reader.positional("SCENE", "a scene file, or the name of a scene in 'rivulet list scenes'", scene, true);
     reader.option("--backend", "NAME", "backend of the simulation: auto, cpu, gl or cl; default: auto", options.backend);
     reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", options.device);
-    reader.flag("--headless", "open no window; write a video, images and statistics", headless);
+    reader.flag("--headless", "open no window; write a video, images and statistics", options.headless);
     reader.flag("--no-render", "draw nothing; simulate and write statistics", noRender);
-    reader.option("--frames", "N", "number of frames; 60 frames are one second of video", options.frames, 0, kMostFrames);
+    reader.option("--frames", "N|A:B", "number of frames; 60 frames are one second of video; A:B: of a recording, frames A to B - 1",
+                  frames);
     reader.option("--seconds", "S", "simulated time, s; headless default: the scene's duration", seconds, 0,
                   static_cast<double>(kMostFrames) / kFramesPerSecond);
     reader.exclude("--seconds", "--frames");
@@ -145,6 +175,8 @@ int runVerb(const Arguments& arguments) {
     reader.option("--out", "DIR", "output folder of video, images and statistics; default: out", options.out);
     reader.option("--video", "FILE.mp4", "video file; default: DIR/NAME.mp4", options.video);
     reader.option("--still", "S", "draw only the frame at this time, s, and no video; may be repeated", stills);
+    reader.flag("--images", "draw an image of each frame, and no video; rivulet join makes the video", options.images);
+    reader.option("--renderer", "NAME", "water renderer, as --set look.renderer=NAME; 'rivulet list renderers' describes each", renderer);
     reader.option("--stats", "FILE.json", "statistics file; default: DIR/stats.json", options.stats);
     reader.option("--cooperate", "PLAN", "how CPU and GPU share the work: off, thesis, behind, or auto, which measures all; default: off",
                   options.cooperate);
@@ -157,40 +189,52 @@ int runVerb(const Arguments& arguments) {
                 options.explain);
     reader.option("--preset", "NAME", "a named set of values in the scene file, applied before --set", preset);
     reader.option("--set", "PATH=VALUE", "set a parameter, for example --set fluid.spacing=0.02; may be repeated", assignments);
-    if (std::optional<int> code = reader.read(arguments)) return *code;
+    const Result<bool> read = reader.parse(arguments);
+    if (!read) return read.error();
+    if (!*read) return std::optional<RunOptions>();
 
-    if (Status sense = settleBackend(options.backend, "auto", options.device); !sense) return report(sense.error());
+    if (Status sense = settleBackend(options.backend, "auto", options.device); !sense) return sense.error();
     std::vector<std::string> cooperations = plans().names();
     cooperations.emplace_back("auto");
-    if (Status known = checkWord("plan", options.cooperate, cooperations); !known) return report(known.error());
+    if (!frames.empty())
+        if (Status sense = readFrames(frames, options); !sense) return sense.error();
+    if (!renderer.empty()) {
+        if (Status known = checkWord("renderer", renderer, renderers().names()); !known) return known.error();
+        assignments.push_back("look.renderer=" + renderer);
+    }
+    if (Status known = checkWord("plan", options.cooperate, cooperations); !known) return known.error();
     options.sized = !size.empty();
     Result<std::pair<int, int>> pixels = parseSize(options.sized ? size : "1280x720");
-    if (!pixels) return report(pixels.error());
+    if (!pixels) return pixels.error();
     std::tie(options.width, options.height) = *pixels;
-    if (noRender && !options.video.empty())
-        return report(badInput("--video cannot be used with --no-render, which draws nothing; leave one of them out"));
-
-    if (noRender && !stills.empty())
-        return report(badInput("--still cannot be used with --no-render, which draws nothing; leave one of them out"));
+    for (const auto& [name, used] : {std::pair("--video", !options.video.empty()), std::pair("--still", !stills.empty()),
+                                     std::pair("--images", options.images), std::pair("--renderer", !renderer.empty())})
+        if (noRender && used)
+            return badInput(fmt::format("{} cannot be used with --no-render, which draws nothing; leave one of them out", name));
+    for (const auto& [name, used] : {std::pair("--video", !options.video.empty()), std::pair("--still", !stills.empty())})
+        if (options.images && used)
+            return badInput(fmt::format("{} cannot be used with --images, which draws all frames as images; leave one of them out", name));
+    if (options.first && !stills.empty())
+        return badInput("--still cannot be used with a piece of --frames, which draws all its frames; leave one of them out");
     Result<SceneFile> loaded = loadScene(scene, assignments, preset);
-    if (!loaded) return report(loaded.error());
+    if (!loaded) return loaded.error();
     for (const std::string& still : stills) {
         Result<int> frame = frameAt(still, *loaded);
-        if (!frame) return report(frame.error());
+        if (!frame) return frame.error();
         options.stills.insert(*frame);
     }
     if (loaded->budget.frameMs > 0 && (!options.save.empty() || !options.resume.empty()))
-        return report(
-            badInput("--save and --resume cannot be used with a budget, which chooses method and spacing at each start; add --set "
-                     "budget.frameMs=0 and set fluid.method and fluid.spacing"));
+        return badInput(
+            "--save and --resume cannot be used with a budget, which chooses method and spacing at each start; add --set "
+            "budget.frameMs=0 and set fluid.method and fluid.spacing");
     if (!loaded->flow.empty() && (!options.save.empty() || !options.resume.empty()))
-        return report(
-            badInput(fmt::format("a state file cannot store flow on skins, and {} has some; leave --save and --resume out", loaded->name)));
+        return badInput(
+            fmt::format("a state file cannot store flow on skins, and {} has some; leave --save and --resume out", loaded->name));
     if (!loaded->flow.empty() && (!options.record.empty() || !options.replay.empty()))
-        return report(badInput(
-            fmt::format("a recording cannot store flow on skins, and {} has some; leave --record and --replay out", loaded->name)));
+        return badInput(
+            fmt::format("a recording cannot store flow on skins, and {} has some; leave --record and --replay out", loaded->name));
     if (!options.replay.empty())
-        if (Status sense = checkReplay(options, noRender); !sense) return report(sense.error());
+        if (Status sense = checkReplay(options, noRender); !sense) return sense.error();
     options.scene = std::move(*loaded);
     if (!options.replay.empty()) {
         options.scene.budget.frameMs = 0;  // nothing is simulated, so there is no time to limit
@@ -199,19 +243,27 @@ int runVerb(const Arguments& arguments) {
     }
     options.render = !noRender;
     if (seconds) {
-        Result<int> frames = framesOf(*seconds, options.scene, "--seconds");
-        if (!frames) return report(frames.error());
-        options.frames = *frames;
+        Result<int> count = framesOf(*seconds, options.scene, "--seconds");
+        if (!count) return count.error();
+        options.frames = *count;
     }
-    options.log = stderrLog();
+    if (!options.stills.empty() || options.images || options.first) options.headless = true;
+    return std::optional(std::move(options));
+}
 
-    if (!headless && !noRender && !hasDisplay()) {
+int runVerb(const Arguments& arguments) {
+    Result<std::optional<RunOptions>> read = readRun(arguments);
+    if (!read) return report(read.error());
+    if (!*read) return kDone;
+    RunOptions options = std::move(**read);
+    options.log = stderrLog();
+    if (!options.headless && options.render && !hasDisplay()) {
         options.log.notice("no display found: running headless");
-        headless = true;
+        options.headless = true;
     }
-    if (!options.stills.empty()) headless = true;
-    if (Status apart = checkFiles(options, headless || noRender); !apart) return report(apart.error());
-    return headless || noRender ? runHeadless(options) : runWindow(options);
+    const bool windowless = options.headless || !options.render;
+    if (Status apart = checkFiles(options, windowless); !apart) return report(apart.error());
+    return windowless ? runHeadless(options) : runWindow(options);
 }
 
 }  // namespace rivulet

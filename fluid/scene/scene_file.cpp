@@ -212,6 +212,7 @@ Result<std::string> findScene(const std::string& path) {
     const fs::path typed(path);
     if (file || typed.has_parent_path()) return file;
     const std::string stem = typed.stem().string();
+    if (Result<std::string> scene = findAsset("scenes/" + stem + ".json", "")) return scene;
     std::vector<std::string> names;
     for (const SceneListing& s : listScenes()) {
         names.push_back(fs::path(s.path).stem().string());

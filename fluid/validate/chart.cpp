@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "engine/core/assert.h"
+
 namespace rivulet {
 
 namespace {
@@ -90,69 +92,111 @@ void markFront(std::vector<ChartRow>& rows) {
         });
 }
 
+namespace {
+
+bool charts(const ChartRequest& request, const char* name) {
+    return request.names.empty() || std::find(request.names.begin(), request.names.end(), name) != request.names.end();
+}
+
+constexpr const char* kViscousCase = "standing_wave";
+
+// The settings that the numerical viscosity of pbf is measured with.
+std::vector<ViscosityRow> plannedViscosity(const ChartRequest& request) {
+    std::vector<ViscosityRow> rows;
+    if (!charts(request, kViscousCase)) return rows;
+    const std::span<const int> iterations = iterationsOf(request);
+    rows.reserve(std::size(kStepCounts) * iterations.size());
+    for (const int steps : kStepCounts)
+        for (const int each : iterations) rows.push_back({.iterations = each, .stepsPerFrame = steps});
+    return rows;
+}
+
+Result<ChartPoint> runSetting(const Run& run, CaseSettings settings, const std::string& what) {
+    settings.method = run.setting->method;
+    settings.quick = run.size == kMiddle;
+    if (run.size != kMiddle) add(settings.assignments, run.size == kCoarse ? run.of->coarse : run.of->fine);
+    add(settings.assignments, run.of->all);
+    add(settings.assignments, run.setting->assignments);
+    const Result<Outcome> outcome = physicsCases().find(run.of->name)->run(settings);
+    ChartPoint point;
+    if (!outcome) {
+        if (run.size == kMiddle) point.refused = fmt::format("{}: {}", what, outcome.error().message);
+        return point;
+    }
+    if (outcome->findings.empty()) {
+        point.stopped = true;
+        return point;
+    }
+    const Finding* f = judgedOf(*outcome);
+    if (f == nullptr || !std::isfinite(f->error)) {
+        point.refused = fmt::format("{}: the run gave no figure", what);
+        return point;
+    }
+    point.row = {run.of->name,
+                 f->what,
+                 run.setting->name,
+                 outcome->spacing,
+                 outcome->particles,
+                 f->error,
+                 outcome->wallPerSecond,
+                 outcome->sweepsPerSecond,
+                 outcome->stepsPerSecond,
+                 outcome->compression,
+                 outcome->fastest,
+                 false};
+    return point;
+}
+
+Result<ChartPoint> runViscosity(const ViscosityRow& row, CaseSettings settings) {
+    settings.method = "pbf";
+    settings.quick = true;
+    settings.assignments.push_back(fmt::format("fluid.pbf.iterations={}", row.iterations));
+    settings.assignments.push_back(fmt::format("fluid.pbf.minSubsteps={}", row.stepsPerFrame));
+    const Result<Outcome> outcome = physicsCases().find(kViscousCase)->run(settings);
+    if (!outcome) return outcome.error();
+    ChartPoint point;
+    point.stopped = outcome->findings.size() < 2;
+    if (!point.stopped)
+        point.viscosity = {row.iterations, row.stepsPerFrame, outcome->findings[1].measured, outcome->findings[0].error,
+                           outcome->wallPerSecond};
+    return point;
+}
+
+}  // namespace
+
+size_t chartPoints(const ChartRequest& request) { return plannedRuns(request).size() + plannedViscosity(request).size(); }
+
+Result<ChartPoint> runChartPoint(const ChartRequest& request, size_t k) {
+    const std::vector<Run> runs = plannedRuns(request);
+    const std::vector<ViscosityRow> viscous = plannedViscosity(request);
+    const size_t whole = runs.size() + viscous.size();
+    ASSERT(k < whole, "chartPoints() is the number of points");
+    const ViscosityRow* viscosity = k < runs.size() ? nullptr : &viscous[k - runs.size()];
+    const std::string what = viscosity == nullptr ? fmt::format("{}, {}", runs[k].of->name, runs[k].setting->name)
+                                                  : fmt::format("{}, pbf with {} corrections and {} steps a frame", kViscousCase,
+                                                                viscosity->iterations, viscosity->stepsPerFrame);
+    CaseSettings settings;  // hundreds of runs: their notices are dropped
+    settings.device = request.device;
+    settings.goOn = [&](double share) { return request.goOn((static_cast<double>(k) + share) / static_cast<double>(whole), what); };
+    return viscosity == nullptr ? runSetting(runs[k], settings, what) : runViscosity(*viscosity, settings);
+}
+
+void addPoint(Chart& chart, const ChartPoint& point) {
+    if (point.row) chart.rows.push_back(*point.row);
+    if (point.viscosity) chart.viscosity.push_back(*point.viscosity);
+    if (!point.refused.empty()) chart.refused.push_back(point.refused);
+    chart.stopped = chart.stopped || point.stopped;
+}
+
 Result<Chart> runChart(const ChartRequest& request) {
     Chart chart;
-    const std::vector<Run> runs = plannedRuns(request);
-    const bool wave =
-        request.names.empty() || std::find(request.names.begin(), request.names.end(), "standing_wave") != request.names.end();
-    const size_t viscous = wave ? iterationsOf(request).size() * std::size(kStepCounts) : 0, whole = runs.size() + viscous;
-    size_t done = 0;
-    CaseSettings settings;
-    settings.device = request.device;
-    // Hundreds of runs: their notices are dropped.
-    const auto onWay = [&](const std::string& what) {
-        settings.goOn = [&request, done, whole, what](double share) {
-            return request.goOn((static_cast<double>(done) + share) / static_cast<double>(whole), what);
-        };
-    };
-    for (const Run& run : runs) {
-        settings.method = run.setting->method;
-        settings.assignments.clear();
-        settings.quick = run.size == kMiddle;
-        if (run.size != kMiddle) add(settings.assignments, run.size == kCoarse ? run.of->coarse : run.of->fine);
-        add(settings.assignments, run.of->all);
-        add(settings.assignments, run.setting->assignments);
-        const std::string what = fmt::format("{}, {}", run.of->name, run.setting->name);
-        onWay(what);
-        const Result<Outcome> outcome = physicsCases().find(run.of->name)->run(settings);
-        ++done;
-        if (!outcome) {
-            if (run.size == kMiddle) chart.refused.push_back(fmt::format("{}: {}", what, outcome.error().message));
-            continue;
-        }
-        if (outcome->findings.empty()) {
-            chart.stopped = true;
-            return chart;
-        }
-        const Finding* f = judgedOf(*outcome);
-        if (f == nullptr || !std::isfinite(f->error)) {
-            chart.refused.push_back(fmt::format("{}: the run gave no figure", what));
-            continue;
-        }
-        chart.rows.push_back({run.of->name, f->what, run.setting->name, outcome->spacing, outcome->particles, f->error,
-                              outcome->wallPerSecond, outcome->sweepsPerSecond, outcome->stepsPerSecond, outcome->compression,
-                              outcome->fastest, false});
+    const size_t points = chartPoints(request);
+    for (size_t k = 0; k < points && !chart.stopped; ++k) {
+        const Result<ChartPoint> point = runChartPoint(request, k);
+        if (!point) return point.error();
+        addPoint(chart, *point);
     }
     markFront(chart.rows);
-    settings.quick = true;
-    for (const int steps : kStepCounts)
-        for (const int iterations : iterationsOf(request)) {
-            if (!wave) break;
-            settings.method = "pbf";
-            settings.assignments.clear();
-            settings.assignments.push_back(fmt::format("fluid.pbf.iterations={}", iterations));
-            settings.assignments.push_back(fmt::format("fluid.pbf.minSubsteps={}", steps));
-            onWay(fmt::format("standing_wave, pbf with {} corrections and {} steps a frame", iterations, steps));
-            const Result<Outcome> outcome = physicsCases().find("standing_wave")->run(settings);
-            ++done;
-            if (!outcome) return outcome.error();
-            if (outcome->findings.size() < 2) {
-                chart.stopped = true;
-                return chart;
-            }
-            chart.viscosity.push_back(
-                {iterations, steps, outcome->findings[1].measured, outcome->findings[0].error, outcome->wallPerSecond});
-        }
     return chart;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,19 @@ struct ChartRequest {
     std::function<bool(double share, const std::string& what)> goOn = [](double, const std::string&) { return true; };
 };
 Result<Chart> runChart(const ChartRequest& request);
+
+// One measurement: a row, or a viscosity, or the reason why there is none. All empty: the combination is left out.
+struct ChartPoint {
+    std::optional<ChartRow> row;
+    std::optional<ViscosityRow> viscosity;
+    std::string refused;  // as Chart::refused
+    bool stopped = false;
+};
+// A chart is the points 0 to chartPoints() - 1, added in this order, then markFront(). Each may be measured by another process.
+size_t chartPoints(const ChartRequest& request);
+Result<ChartPoint> runChartPoint(const ChartRequest& request, size_t k);
+void addPoint(Chart& chart, const ChartPoint& point);
+
 std::vector<std::string> chartCases();  // names
 // What the chart sets in a case at all sizes: "duration=8"; empty: nothing.
 std::string_view chartAssignments(std::string_view name);

@@ -77,6 +77,8 @@ def shortened(words, folder):
             out += ["--headless", "--size", "64x36"] if shows and "--size" not in out else ["--headless"] if shows else ["--no-render"]
     if verb == "export" and "--seconds" not in out:
         out += ["--seconds", "0.02"]
+    if verb == "sweep":
+        out += ["--output", str(folder / "sweep"), "--dry-run"]
     if verb == "voxelize" and "--out" not in out:
         out += ["--out", str(folder / "mesh.rvox")]
     return out

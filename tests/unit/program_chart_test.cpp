@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <sstream>
 
+#include "engine/core/file.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::testing::program_chart_test {
@@ -24,6 +26,36 @@ TEST(ProgramChart, StopsWhenItIsAskedTo) {
     const Outcome outcome = runProgram({"chart", "taylor_green", "--quick"}, in);
     EXPECT_EQ(outcome.code, 130) << outcome.err;
     EXPECT_EQ(scratch.contents(), std::vector<std::string>{"docs"});
+}
+
+// A point of the chart is the same in any process, but for its time; a chart is made of all its points only.
+TEST(ProgramChart, PointsAreTasksOfASweep) {
+    Scratch scratch;
+    RunOptions in;
+    in.folder = scratch.path();
+    const Outcome listed = runProgram({"chart", "taylor_green", "--quick", "--sweep", "t.json"}, in);
+    ASSERT_EQ(listed.code, 0) << listed.err;
+    const Outcome swept = runProgram({"sweep", "t.json", "--task", "0"}, in);
+    ASSERT_EQ(swept.code, 0) << swept.err;
+    ASSERT_EQ(runProgram({"chart", "taylor_green", "--quick", "--point", "0", "--json", "alone.json"}, in).code, 0);
+    const auto withoutTime = [](const std::string& file) {
+        const Result<std::string> text = readFile(file);
+        std::string kept;
+        std::istringstream lines(text ? *text : "");
+        for (std::string line; std::getline(lines, line);)
+            if (line.find("wallPerSecond") == std::string::npos) kept += line + '\n';
+        return kept;
+    };
+    EXPECT_EQ(withoutTime(scratch.file("t/tasks/0/stats.json")), withoutTime(scratch.file("alone.json")));
+    EXPECT_NE(withoutTime(scratch.file("alone.json")).find("\"error\": "), std::string::npos);
+    const Result<std::string> table = readFile(scratch.file("t/results.csv"));
+    ASSERT_TRUE(table);
+    EXPECT_NE(table->find(",error,"), std::string::npos) << *table;
+    EXPECT_NE(table->find(",time.wallPerSecond"), std::string::npos) << *table;
+    expectRefusal(runProgram({"chart", "taylor_green", "--quick", "--points", "t", "--out", "o"}, in), 2, "point 1 of 18 is missing");
+    expectRefusal(runProgram({"chart", "taylor_green", "--quick", "--point", "18", "--json", "x"}, in), 2, "the last is 17");
+    expectRefusal(runProgram({"chart", "stability", "--point", "1", "--json", "x"}, in), 2, "is of speed_accuracy.md alone");
+    expectRefusal(runProgram({"chart", "--point", "1"}, in), 2, "add --json FILE.json");
 }
 
 TEST(ProgramBudget, ChoosesSettingsAndReportsThem) {

@@ -1,0 +1,123 @@
+#include "demos/rivulet/sweep_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+
+#include "engine/app/capture.h"
+#include "engine/core/file.h"
+#include "engine/core/folder.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A word as a shell reads it back.
+std::string shellWord(const std::string& word) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               std::string_view("-_./:=,+@%").find(c) != std::string_view::npos;
+    });
+    if (plain) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+// Whether the tasks of `before` are the first of `now`, with the same commands.
+bool sweepGrew(const Sweep& before, const Sweep& now) {
+    if (before.tasks > now.tasks || before.commands.size() != now.commands.size() || before.parameters.size() != now.parameters.size())
+        return false;
+    for (size_t c = 0; c < now.commands.size(); ++c)
+        if (before.commands[c].words != now.commands[c].words) return false;
+    for (size_t p = 0; p < now.parameters.size(); ++p)
+        if (before.parameters[p].name != now.parameters[p].name ||
+            !std::equal(before.parameters[p].values.begin(), before.parameters[p].values.end(), now.parameters[p].values.begin()))
+            return false;
+    return true;
+}
+
+// Whether a folder that holds this entry, and no sweep.json, is another's: a sweep that was killed at its start leaves the others.
+bool isForeign(const fs::path& entry) {
+    const std::string name = entry.filename().string();
+    return name != "tasks" && name != "tasks.txt" && !name.starts_with(".rivulet-");
+}
+
+std::string programPath() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    return error ? "rivulet" : program.string();
+}
+
+}  // namespace
+
+std::vector<std::string> taskLine(const Sweep& sweep, const SweepFolder& folder, size_t task, int threads) {
+    std::vector<std::string> words = {programPath(), "sweep", sweep.file, "--output", folder.path(), "--task", std::to_string(task)};
+    if (threads != 1) words.insert(words.end(), {"--threads", std::to_string(threads)});
+    return words;
+}
+
+std::string shellLine(const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) line += (line.empty() ? "" : " ") + shellWord(word);
+    return line;
+}
+
+Status SweepFolder::prepare(const Sweep& sweep, std::string_view text, int threads) const {
+    const std::string kept = file("sweep.json"), list = file("tasks.txt");
+    std::error_code none;
+    if (fs::exists(kept, none)) {
+        const Result<std::string> before = readFile(kept);
+        if (!before) return before.error();
+        if (*before == text && fs::exists(list, none)) return ok();
+        const Result<Sweep> old = readSweep(*before, kept);
+        if (!old || !sweepGrew(*old, sweep))
+            return badInput(
+                fmt::format("{} has changed since its tasks in {} were made, and not only by more tasks at the end; choose another "
+                            "--output, or delete the folder",
+                            sweep.file, path_));
+    } else if (const std::vector<fs::path> others = entriesOf(path_); std::any_of(others.begin(), others.end(), isForeign)) {
+        return badInput(fmt::format("{} exists and is no folder of a sweep; choose another --output", path_));
+    }
+    if (Status sound = checkTasks(sweep); !sound) return sound;
+    if (Status made = makeFolder(file("tasks")); !made) return made;
+    std::string lines;
+    for (size_t task = 0; task < sweep.tasks; ++task) lines += shellLine(taskLine(sweep, *this, task, threads)) + '\n';
+    if (Status written = writeFileAtomic(list, lines); !written) return written;
+    return writeFileAtomic(kept, text);
+}
+
+bool SweepFolder::hasEnded(size_t task) const {
+    std::error_code none;
+    return fs::exists(ended(task), none);
+}
+
+std::vector<size_t> SweepFolder::endedTasks() const {
+    std::vector<size_t> tasks;
+    for (const fs::path& path : entriesOf(file("tasks"))) {
+        const std::string name = path.filename().string();
+        size_t task = 0;
+        const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), task);
+        if (wrong == std::errc() && end == name.data() + name.size()) tasks.push_back(task);
+    }
+    std::sort(tasks.begin(), tasks.end());
+    return tasks;
+}
+
+Descriptor SweepFolder::lock(size_t task, std::optional<Error>& error) const {
+    const std::string name = ended(task) + ".lock";
+    Descriptor file = openDescriptor(name, O_RDWR | O_CREAT);
+    if (file.valid() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return file;
+    const int why = errno;
+    if (!file.valid() || why != EWOULDBLOCK) error = failed(fmt::format("{} cannot be locked: {}", name, reasonOf(why)));
+    return {};
+}
+
+}  // namespace rivulet

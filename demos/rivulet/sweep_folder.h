@@ -1,0 +1,54 @@
+// The folder of a sweep, which several processes use at a time:
+//
+//     sweep.json      the sweep, as it was given
+//     tasks.txt       one command line a task
+//     tasks/7         a task that has ended: what its commands wrote, and log.txt, what they printed
+//     tasks/7.part    one that runs, failed or was killed; tasks/7.lock: locked (flock) while it runs
+//     results.csv     the parameters and the numbers of stats.json of each task that has ended
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demos/rivulet/sweep.h"
+#include "engine/core/descriptor.h"
+
+namespace rivulet {
+
+class SweepFolder {
+  public:
+    explicit SweepFolder(std::string path) : path_(std::move(path)) {}  // absolute
+
+    const std::string& path() const { return path_; }
+    std::string file(const std::string& name) const { return path_ + "/" + name; }
+    std::string ended(size_t task) const { return file("tasks/" + std::to_string(task)); }
+    std::string part(size_t task) const { return ended(task) + ".part"; }
+
+    // Writes sweep.json and tasks.txt, unless they are there. `threads`: as SweepOptions::threads. Error (badInput): the folder is that of
+    // another sweep, unless `sweep` has the same tasks and then more; as checkTasks. (failed): not writable.
+    Status prepare(const Sweep& sweep, std::string_view text, int threads) const;
+
+    bool hasEnded(size_t task) const;
+    std::vector<size_t> endedTasks() const;  // in order
+    // Locks a task. Not valid: another process has locked it, or `error` says why it cannot be locked.
+    Descriptor lock(size_t task, std::optional<Error>& error) const;
+
+    // Adds the tasks that have ended to results.csv and removes those whose folder is gone; `again` is read again. The bytes depend on
+    // nothing but the tasks. Error (failed): not writable.
+    Status collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt) const;
+
+  private:
+    std::string path_;
+};
+
+// The words of the command that runs one task, and a command as a shell reads it.
+std::vector<std::string> taskLine(const Sweep& sweep, const SweepFolder& folder, size_t task, int threads);
+std::string shellLine(const std::vector<std::string>& words);
+
+// The numbers of a stats.json by their columns: "density.avgCompression"; the elements of a list have numbers as names. Times of the wall
+// clock begin with "time.": the parts of their names include `passes`, or one that ends with Ms or begins with wall. Error (badInput):
+// damaged.
+Result<std::vector<std::pair<std::string, std::string>>> numbersOf(const std::string& statsFile);
+
+}  // namespace rivulet

@@ -1,0 +1,21 @@
+// Runs the tasks of a sweep: one in this process, or all that have not ended on the cores of this machine.
+#pragma once
+
+#include <optional>
+
+#include "demos/rivulet/sweep_folder.h"
+
+namespace rivulet {
+
+// Runs one task: its commands, one after another, until one fails. Says so and returns kDone if it has ended before, or if another process
+// runs it. Returns an ExitCode; kFailed: a command failed, whose last line is on stderr.
+int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int threads);
+
+// Runs all tasks that have not ended, `jobs` at a time. Returns an ExitCode; kFailed: some tasks failed; 128 + the signal that
+// interrupted.
+int runSweepTasks(const Sweep& sweep, const SweepFolder& folder, int jobs, int threads);
+
+// The processors that this process may use.
+int allowedProcessors();
+
+}  // namespace rivulet

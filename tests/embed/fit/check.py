@@ -22,7 +22,7 @@ def wave(folder, low=2e-3, high=5e-2, nu=0.008, **more):
 def refused(work, *words):
     try:
         work()
-    except rivulet.fit.FitError as error:
+    except rivulet.BadInput as error:
         assert all(word in str(error) for word in words), error
     else:
         raise AssertionError(f"not refused: {words}")
@@ -90,6 +90,7 @@ def main():
     refused(lambda: wave("wave", seconds=0.01), "raise seconds")
     refused(lambda: rivulet.fit.fit({"colliders": [{}]}, {"fluid.viscosity": (0, 1)}, curve, "front"), "colliders", "start")
     refused(lambda: rivulet.fit.fit({}, {"fluid.viscosity": (0, 1)}, curve, "fronts"), "fronts", "maximum_speed")
+    refused(lambda: rivulet.fit.fit({}, {"fluid.viscosity": (0, 1)}, curve, "fall.csv:front"), "fall.csv is no Python file")
     pathlib.Path("bad.json").write_text(json.dumps({**asked, "scnee": 1}))
     said = subprocess.run([*command, "bad.json"], capture_output=True, text=True)
     assert said.returncode == 2 and said.stderr.count("\n") == 1 and "scnee" in said.stderr, said

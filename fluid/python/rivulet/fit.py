@@ -29,11 +29,11 @@ from typing import Any, Callable, Mapping, NamedTuple, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import BadInput, Error, version
+from ._library import BadInput, Error, array_of, version
 from .context import Context
 from .world import World
 
-__all__ = ["Fit", "Point", "fit", "fit_file"]
+__all__ = ["Fit", "Point", "fit", "fit_file", "front"]
 
 Array = NDArray[Any]
 Path = Union[str, "os.PathLike[str]"]
@@ -57,17 +57,15 @@ class Point(NamedTuple):
 
 # --- series: a number of a world, at the current time ------------------------------------------------------------------------------------------
 
-def front(world: World, spacing: float) -> float:
-    """Position of the front along +x, m: near the floor, the median over the tank's width, which ignores single drops that run ahead."""
-    at = world.particles().positions
+def front(positions: ArrayLike, spacing: float) -> float:
+    """Position (m) of the water's front along +x, of particles at positions (n, 3), m, that are about `spacing` (m) apart: of those within two
+    spacings above the lowest, the median over the tank's width, which ignores single drops that run ahead. BadInput: no particles."""
+    at = array_of(positions, (-1, 3), "positions")
+    if not len(at) or not spacing > 0:
+        raise BadInput(f"{len(at)} particles {spacing:g} m apart have no front: give at least one, and a spacing above 0")
     near = at[at[:, 1] < at[:, 1].min() + 2 * spacing]
     strip = (near[:, 2] / spacing).astype(int)
     return float(np.median([near[strip == k, 0].max() for k in np.unique(strip)]) + 0.5 * spacing)
-
-
-def height(world: World, spacing: float) -> float:
-    """The highest particle's top, m."""
-    return float(world.particles().positions[:, 1].max() + 0.5 * spacing)
 
 
 def _centre_of_mass(axis: int) -> Series:
@@ -75,7 +73,8 @@ def _centre_of_mass(axis: int) -> Series:
 
 
 SERIES: dict[str, Series] = {
-    "front": front, "height": height,
+    "front": lambda world, spacing: front(world.particles().positions, spacing),
+    "height": lambda world, spacing: float(world.particles().positions[:, 1].max() + 0.5 * spacing),  # the highest particle's top
     **{f"centre_of_mass_{name}": _centre_of_mass(axis) for axis, name in enumerate("xyz")},
     "kinetic": lambda world, _: float(world.stats().kinetic),
     "potential": lambda world, _: float(world.stats().potential),

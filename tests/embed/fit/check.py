@@ -29,6 +29,12 @@ def refused(work, *words):
 
 
 def main():
+    # The front of a block, whose face is at 0.5 m, with a drop that runs ahead on the floor.
+    block = np.stack(np.meshgrid(*(np.arange(0.05, side, 0.1) for side in (0.5, 0.3, 1)), indexing="ij"), axis=-1).reshape(-1, 3)
+    for low in (0, -2, 7):
+        assert abs(rivulet.fit.front(np.vstack([block, [[3, 0.05, 0.45]]]) + [0, low, 0], 0.1) - 0.5) < 1e-6
+    refused(lambda: rivulet.fit.front(np.zeros((0, 3)), 0.1), "0 particles", "at least one")
+
     # The theory's viscosity, within 3 %; the interval is about the value, and the runs that ended are kept.
     found = wave("wave")
     nu, low_high = found.best["fluid.viscosity"], found.interval["fluid.viscosity"]

@@ -80,6 +80,7 @@ SERIES: dict[str, Series] = {
     "potential": lambda world, _: float(world.stats().potential),
     "maximum_speed": lambda world, _: float(world.stats().maximum_speed),
 }
+LATE = SERIES.keys() - {"front", "height"}  # from World.stats(), which is some frames old on a GPU
 
 
 def _function(name: str, what: str) -> Callable[..., Any]:
@@ -378,7 +379,8 @@ class Fit:
         for name, value in self.best.items():
             error = "" if self.error[name] is None else f" +- {self.error[name]:.2g}"
             lines.append(f"{name} = {value:.4g}{error}")
-        shift = f", the run is {self.shift:.3g} s later than the measurement" if self.shift else ""
+        late = "later" if self.shift > 0 else "earlier"
+        shift = f"; the run is {abs(self.shift):.3g} s {late} than the measurement" if self.shift else ""
         lines.append(f"rms difference {self.residual:.3g}, {100 * self.relative:.2g} % of the curve's range{shift}")
         return "\n".join(lines + self.notes)
 
@@ -435,7 +437,7 @@ def fit(scene: Mapping[str, Any] | Path, parameters: Mapping[str, Sequence[Any]]
     evaluations about the largest number of runs; tolerance: of the values, as a share of the range
     folder      where runs are kept; it is made
     jobs        processes at the same time, where the method allows; None: as many as cores
-    backend     of the runs' contexts; frame: s between two values of the curve; seed: of the random starts
+    backend     of the runs' contexts; series other than front and height need cpu; frame: s between two values of the curve; seed: of the random starts
 
     BadInput: a wrong argument. Error: a run failed, or its series is not finite."""
     if isinstance(scene, (str, os.PathLike)):
@@ -463,6 +465,8 @@ def fit(scene: Mapping[str, Any] | Path, parameters: Mapping[str, Sequence[Any]]
         raise BadInput(f"brent finds one parameter, not {len(ranges)}: use nelder-mead or differential evolution")
     if callable(series):
         series = _named(series)
+    elif series in LATE and backend != "cpu":
+        raise BadInput(f"series {series} is some frames old on a GPU: set backend to cpu, or give a function that reads world.particles()")
     elif series not in SERIES:
         _function(series, "series")
     seconds = float(curve[-1, 0] + shift[1]) if seconds is None else float(seconds)

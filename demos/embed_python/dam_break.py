@@ -10,18 +10,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import rivulet
+from rivulet.fit import front
 
 A, SPACING, GRAVITY = 0.25, 0.25 / 16, 9.81  # m, m, m/s^2: the column's width, the particle spacing, gravity
 SCENE = {"fluid": {"method": "dfsph", "spacing": SPACING, "box": {"max": [5 * A, 3 * A, A]}, "blocks": [{"max": [A, 2 * A, A]}]}}
 TO_T = np.sqrt(2 * GRAVITY / A)  # T = t sqrt(2 g / a), the dimensionless time of Martin and Moyce
 DATA = pathlib.Path(__file__).resolve().parents[2] / "assets/reference"
-
-
-def front_of(positions):
-    """Position of the front, m: near the floor, the median over the tank's width, which ignores single drops that run ahead."""
-    near = positions[positions[:, 1] < 2 * SPACING]
-    strip = (near[:, 2] / SPACING).astype(int)
-    return np.median([near[strip == k, 0].max() for k in np.unique(strip)]) + 0.5 * SPACING
 
 
 def relative_error(reference):
@@ -41,7 +35,7 @@ with rivulet.Context() as context, context.world(SCENE) as world:
     while not times or times[-1] * TO_T < 3.4:
         particles = world.particles()
         times.append(world.stats().time)
-        fronts.append(front_of(particles.positions))
+        fronts.append(front(particles.positions, SPACING))
         for wanted in (0, 1.7, 3.3):
             if wanted not in moments and times[-1] * TO_T >= wanted:
                 moments[wanted] = particles

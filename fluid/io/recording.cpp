@@ -329,8 +329,8 @@ Status RecordingReader::scan() {
         at += sizeof(head) + head.packedBytes;
     }
     if (offsets_.empty()) return damaged(fmt::format("it is cut off or damaged at byte {}, before its first frame is whole", at));
-    cut_ = fmt::format("{} has no end: it is cut off or damaged at byte {}, after frame {}; the {} frames before are shown", path_, at,
-                       offsets_.size() - 1, offsets_.size());
+    cut_ = fmt::format("{} has no end: it is cut off or damaged at byte {}; only its whole frames, 0 to {}, are used", path_, at,
+                       offsets_.size() - 1);
     return ok();
 }
 

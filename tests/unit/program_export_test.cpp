@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 
+#include "engine/core/file.h"
 #include "engine/scene/import_model.h"
 #include "tests/unit/mesh_volume.h"
 #include "tests/unit/program_runner.h"
@@ -88,6 +89,15 @@ TEST(ProgramExport, ADataSetIsWholeOrNotThere) {
     expectRefusal(exported({"--set", "fluid.viscosity=1"}, in(scratch)), 2, "not simulated again; leave --set out");
     expectRefusal(exported({"--up", "z"}, in(scratch)), 2, "leave --up out");
     expectRefusal(runProgram({"export", "s.rrec", "--format", "ply", "--out", "sets"}, in(scratch)), 2, "as hdf5 or zarr; for ply export");
+    std::filesystem::resize_file(scratch.path() / "s.rrec", std::filesystem::file_size(scratch.path() / "s.rrec") / 2);
+    const Outcome cut = exported({}, in(scratch));
+    ASSERT_EQ(cut.code, 0) << cut.err;
+    EXPECT_NE(cut.err.find("s.rrec has no end: it is cut off or damaged at byte"), std::string::npos) << cut.err;
+    EXPECT_NE(cut.err.find("only its whole frames, 0 to"), std::string::npos) << "true where frames are written, too: " << cut.err;
+    const Result<std::string> attributes = readFile((scratch.path() / "sets/s.zarr/.zattrs").string());
+    ASSERT_TRUE(attributes) << attributes.error().message;
+    EXPECT_NE(attributes->find("\"incomplete\""), std::string::npos);
+    std::filesystem::remove_all(scratch.path() / "sets");
     std::filesystem::resize_file(scratch.path() / "s.rrec", 20);
     expectRefusal(exported({}, in(scratch)), 2, "s.rrec: it is cut off after 20 bytes");
     EXPECT_TRUE(!std::filesystem::exists(scratch.path() / "sets") || std::filesystem::is_empty(scratch.path() / "sets"))

@@ -7,8 +7,11 @@
     print(found)
 
 Every run is kept in the folder of the fit by its values: a fit that was killed goes on where it was, and a fit with another curve or another
-method of search reuses the runs. Needs NumPy and SciPy; Matplotlib for the plot. docs/fitting.md explains the results.
+method of search reuses the runs. Needs NumPy and SciPy; Matplotlib for the plot. docs/fitting.md explains the results. A wrong argument
+raises BadInput, a run that cannot be compared raises Error.
 """
+from __future__ import annotations
+
 import concurrent.futures
 import copy
 import csv
@@ -21,112 +24,133 @@ import multiprocessing
 import os
 import pathlib
 import sys
-from collections import namedtuple
+from typing import Any, Callable, Mapping, NamedTuple, Sequence, Union
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from ._library import BadInput, Error, array_of, version
+from .context import Context
+from .world import World
+
+__all__ = ["Fit", "Point", "fit", "fit_file", "front"]
+
+Array = NDArray[Any]
+Path = Union[str, "os.PathLike[str]"]
+Series = Callable[[World, float], float]  # of a world and the particle spacing (m), in SI units
+Start = Callable[[Context, "dict[str, Any]"], World]  # of a context and the scene with the values that are tried
+Curve = Sequence[Sequence[float]]  # a run's times (s) and its values
 OF_A_WORLD = ("fluid", "emitters", "sinks", "dry")  # the parts of a scene that act on water; colliders and the like need a function `start`
 NOT_OF_A_WORLD = ("colliders", "bodies", "flow")
 METHODS = ("brent", "nelder-mead", "differential evolution")
 SCAN = 7  # values over the range of a single parameter, before Brent's method searches between the best of them
 
-Point = namedtuple("Point", ["values", "residual", "shift", "cached"])
-Point.__doc__ = "A tried point: values (by parameter), residual (rms difference, in the unit of the curve), shift (s), cached: no run was needed."
 
+class Point(NamedTuple):
+    """Values that were tried."""
 
-class FitError(ValueError):
-    """The request makes no sense: one sentence with the place and the remedy."""
+    values: dict[str, float]  #: by the parameter's path
+    residual: float  #: rms difference from the measured curve, in its unit, at the best shift
+    shift: float  #: s: time of the run = time of the measurement + shift
+    cached: bool  #: the run was there before this fit
 
 
 # --- series: a number of a world, at the current time ------------------------------------------------------------------------------------------
 
-def front(world, spacing):
-    """Position of the front along +x, m: near the floor, the median over the tank's width, which ignores single drops that run ahead."""
-    at = world.particles().positions
+def front(positions: ArrayLike, spacing: float) -> float:
+    """Position (m) of the water's front along +x, of particles at positions (n, 3), m, that are about `spacing` (m) apart: of those within two
+    spacings above the lowest, the median over the tank's width, which ignores single drops that run ahead. BadInput: no particles."""
+    at = array_of(positions, (-1, 3), "positions")
+    if not len(at) or not spacing > 0:
+        raise BadInput(f"{len(at)} particles {spacing:g} m apart have no front: give at least one, and a spacing above 0")
     near = at[at[:, 1] < at[:, 1].min() + 2 * spacing]
     strip = (near[:, 2] / spacing).astype(int)
     return float(np.median([near[strip == k, 0].max() for k in np.unique(strip)]) + 0.5 * spacing)
 
 
-def height(world, spacing):
-    """The highest particle's top, m."""
-    return float(world.particles().positions[:, 1].max() + 0.5 * spacing)
+def _centre_of_mass(axis: int) -> Series:
+    return lambda world, _: float(world.stats().centre_of_mass[axis])
 
 
-SERIES = {
-    "front": front, "height": height,
-    **{f"centre_of_mass_{axis}": (lambda k: lambda world, _: float(world.stats().centre_of_mass[k]))(k) for k, axis in enumerate("xyz")},
+SERIES: dict[str, Series] = {
+    "front": lambda world, spacing: front(world.particles().positions, spacing),
+    "height": lambda world, spacing: float(world.particles().positions[:, 1].max() + 0.5 * spacing),  # the highest particle's top
+    **{f"centre_of_mass_{name}": _centre_of_mass(axis) for axis, name in enumerate("xyz")},
     "kinetic": lambda world, _: float(world.stats().kinetic),
     "potential": lambda world, _: float(world.stats().potential),
     "maximum_speed": lambda world, _: float(world.stats().maximum_speed),
 }
+LATE = SERIES.keys() - {"front", "height"}  # from World.stats(), which is some frames old on a GPU
 
 
-def _function(name, what):
+def _function(name: str, what: str) -> Callable[..., Any]:
     """A function by `FILE.py:NAME`."""
     file, _, function = name.rpartition(":")
     if not file or not pathlib.Path(file).is_file():
-        raise FitError(f"{what} {name!r} is neither {', '.join(SERIES)} nor FILE.py:FUNCTION of a file that exists")
+        raise BadInput(f"{what} {name!r} is neither {', '.join(SERIES)} nor FILE.py:FUNCTION of a file that exists")
     spec = importlib.util.spec_from_file_location("rivulet_fit_" + pathlib.Path(file).stem, file)
+    if spec is None or spec.loader is None:
+        raise BadInput(f"{what} {name!r}: {file} is no Python file; name it with .py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    if not hasattr(module, function):
-        raise FitError(f"{file} has no function {function}")
-    return getattr(module, function)
+    found: Callable[..., Any] | None = getattr(module, function, None)
+    if not callable(found):
+        raise BadInput(f"{file} has no function {function}")
+    return found
 
 
-def _named(function):
-    """The name by which another process finds a function, and what its text is."""
+def _named(function: Callable[..., Any]) -> str:
+    """FILE.py:NAME, by which another process finds a function."""
     file = inspect.getsourcefile(function)
     if file is None or "<" in function.__qualname__ or "." in function.__qualname__:
-        raise FitError(f"{function} cannot be called by another process: define it with def at the top of a file")
+        raise BadInput(f"{function} cannot be called by another process: define it with def at the top of a file")
     return f"{os.path.abspath(file)}:{function.__name__}"
 
 
 # --- one run -----------------------------------------------------------------------------------------------------------------------------------
 
-def _set(scene, path, value):
+def _set(scene: dict[str, Any], path: str, value: Any) -> None:
     """Sets "fluid.blocks.0.max" in a scene's dict."""
-    at, names = scene, path.split(".")
+    at: Any = scene
+    names = path.split(".")
     for name, following in zip(names[:-1], names[1:]):
         if isinstance(at, list):
             if not name.isdigit() or int(name) >= len(at):
-                raise FitError(f"{path}: the scene has {len(at)} items there")
+                raise BadInput(f"{path}: the scene has {len(at)} items there")
             at = at[int(name)]
         else:
             at = at.setdefault(name, [] if following.isdigit() else {})
     if isinstance(at, list):
         if not names[-1].isdigit() or int(names[-1]) >= len(at):
-            raise FitError(f"{path}: the scene has {len(at)} items there; write the list into the scene")
+            raise BadInput(f"{path}: the scene has {len(at)} items there; write the list into the scene")
         at[int(names[-1])] = value
     else:
         at[names[-1]] = value
 
 
-def _run(job):
-    """[times, values] of one run; called in a process of its own. `job`: as Search.job."""
-    import rivulet
+def _run(job: dict[str, Any]) -> Curve:
+    """The curve of one run; called in a process of its own. `job`: as fit makes it."""
     scene = copy.deepcopy(job["scene"])
     for path, value in job["settings"].items():
         _set(scene, path, value)
     series = SERIES.get(job["series"]) or _function(job["series"], "series")
     spacing = scene.get("fluid", {}).get("spacing", 0.02)
-    with rivulet.Context(backend=job["backend"], threads=job["threads"]) as context:
+    with Context(backend=job["backend"], threads=job["threads"]) as context:
         world = _function(job["start"], "start")(context, scene) if job["start"] else context.world(scene)
         with world:
             times, values = [world.stats().time], [series(world, spacing)]
             while times[-1] < job["seconds"]:
                 world.step(job["frame"])
                 if world.stats().time <= times[-1]:
-                    raise FitError(f"the run stopped at {times[-1]:.3g} s with {job['settings']}: its time no longer advances")
+                    raise Error(f"the run stopped at {times[-1]:.3g} s with {job['settings']}: its time no longer advances")
                 times.append(world.stats().time)
                 values.append(series(world, spacing))
     if not np.isfinite(values).all():
-        raise FitError(f"series {job['series']} is not finite with {job['settings']}")
+        raise Error(f"series {job['series']} is not finite with {job['settings']}")
     return [times, values]
 
 
-def _write(path, text):
+def _write(path: Path, text: str) -> None:
     part = f"{path}.part{os.getpid()}"
     with open(part, "w", encoding="utf-8") as file:
         file.write(text)
@@ -135,47 +159,54 @@ def _write(path, text):
 
 # --- the search --------------------------------------------------------------------------------------------------------------------------------
 
-class Range:
+class _Range:
     """The range of a parameter, as 0 to 1."""
 
-    def __init__(self, name, low, high, scale="linear"):
+    def __init__(self, name: str, low: float, high: float, scale: str = "linear") -> None:
         self.name, self.low, self.high, self.log = name, float(low), float(high), scale == "log"
         if scale not in ("linear", "log"):
-            raise FitError(f"{name}: scale {scale!r} is neither linear nor log")
+            raise BadInput(f"{name}: scale {scale!r} is neither linear nor log")
         if not self.low < self.high or not math.isfinite(self.high - self.low):
-            raise FitError(f"{name}: a range goes from a smaller to a larger number, not from {low} to {high}")
+            raise BadInput(f"{name}: a range goes from a smaller to a larger number, not from {low} to {high}")
         if self.log and self.low <= 0:
-            raise FitError(f"{name}: a range with scale log begins above 0, not at {low}")
+            raise BadInput(f"{name}: a range with scale log begins above 0, not at {low}")
 
-    def value(self, u):
+    def value(self, u: float) -> float:
         u = min(max(float(u), 0.0), 1.0)
         value = self.low * (self.high / self.low) ** u if self.log else self.low + u * (self.high - self.low)
         return float(f"{value:.9g}")  # the key of the kept run
 
-    def place(self, value):
+    def place(self, value: float) -> float:
         return math.log(value / self.low) / math.log(self.high / self.low) if self.log else (value - self.low) / (self.high - self.low)
 
 
-class Search:
-    def __init__(self, job, ranges, measured, shift, folder, jobs):
+class _Search:
+    """Runs at places (one number from 0 to 1 for each parameter), kept in files, and their differences from the measured curve."""
+
+    def __init__(self, job: dict[str, Any], ranges: list[_Range], measured: Array, shift: tuple[float, float], folder: Path, jobs: int) -> None:
         self.job, self.ranges, self.measured, self.shift, self.folder, self.jobs = job, ranges, measured, shift, pathlib.Path(folder), jobs
-        self.points, self.curves, self.pool = [], {}, None
+        self.points: list[Point] = []
+        self.curves: dict[tuple[float, ...], Curve] = {}
+        self.pool: concurrent.futures.ProcessPoolExecutor | None = None
         (self.folder / "runs").mkdir(parents=True, exist_ok=True)
 
-    def path(self, values):
-        import rivulet
-        what = {**self.job, "settings": {**self.job["settings"], **values}, "version": rivulet.version()}
+    def path(self, values: Mapping[str, float]) -> pathlib.Path:
+        """Of the kept run with these values."""
+        what: dict[str, Any] = {**self.job, "settings": {**self.job["settings"], **values}, "version": version()}
         del what["threads"]  # results do not depend on it
         for name in ("series", "start"):  # a function that was changed is another one
             if what[name] and what[name] not in SERIES:
                 what[name] += hashlib.sha256(pathlib.Path(what[name].rpartition(":")[0]).read_bytes()).hexdigest()
         return self.folder / "runs" / (hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:24] + ".json")
 
-    def residual(self, curve):
+    def residual(self, curve: Curve) -> tuple[float, float]:
         """Least rms difference over the shifts, and the shift: time of the run = time of the measurement + shift."""
         times, values = (np.array(part) for part in curve)
         t, y = self.measured.T
-        rms = lambda shift: math.sqrt(np.mean((np.interp(t + shift, times, values) - y) ** 2))
+
+        def rms(shift: float) -> float:
+            return math.sqrt(np.mean((np.interp(t + shift, times, values) - y) ** 2))
+
         low, high = self.shift
         if low == high:
             return rms(low), low
@@ -186,7 +217,7 @@ class Search:
         costs = [rms(s) for s in fine]
         return min(costs), float(fine[np.argmin(costs)])
 
-    def many(self, places):
+    def many(self, places: Sequence[ArrayLike] | Array) -> list[float]:
         """Residuals at several places, each run in a process of its own."""
         wanted = [{r.name: r.value(u) for r, u in zip(self.ranges, np.atleast_1d(place))} for place in places]
         paths = [self.path(values) for values in wanted]
@@ -213,15 +244,15 @@ class Search:
             results.append(residual)
         return results
 
-    def one(self, place):
+    def one(self, place: ArrayLike) -> float:
         return self.many([place])[0]
 
-    def close(self):
+    def close(self) -> None:
         if self.pool is not None:
             self.pool.shutdown(cancel_futures=True)
 
 
-def _search(search, method, evaluations, tolerance, seed):
+def _search(search: _Search, method: str, evaluations: int, tolerance: float, seed: int) -> None:
     from scipy import optimize
     from scipy.stats import qmc
     count = len(search.ranges)
@@ -238,9 +269,10 @@ def _search(search, method, evaluations, tolerance, seed):
     elif method == "nelder-mead":
         starts = qmc.LatinHypercube(count, seed=seed).random(min(max(4 * count, 8), evaluations))
         costs = search.many(starts)
-        best = starts[np.argmin(costs)]
-        simplex = np.vstack([best] + [np.clip(best + (0.15 if best[k] < 0.5 else -0.15) * np.eye(count)[k], 0, 1) for k in range(count)])
-        optimize.minimize(search.one, best, method="Nelder-Mead", bounds=[(0, 1)] * count,
+        start: Array = starts[np.argmin(costs)]
+        sides = np.diag(np.where(start < 0.5, 0.15, -0.15))
+        simplex = np.vstack([start, np.clip(start + sides, 0, 1)])
+        optimize.minimize(search.one, start, method="Nelder-Mead", bounds=[(0, 1)] * count,
                           options={"initial_simplex": simplex, "xatol": tolerance, "fatol": 0, "maxfev": max(1, evaluations - len(starts))})
     else:
         generation = 5 * count
@@ -251,30 +283,40 @@ def _search(search, method, evaluations, tolerance, seed):
 # --- the result --------------------------------------------------------------------------------------------------------------------------------
 
 class Fit:
-    """best: value by parameter. residual: rms difference from the curve, in its unit; relative: divided by the curve's range.
-    shift: s. error: standard error by parameter, from the curvature about the best point, None if it cannot be told. interval: values that fit
-    as well as the best, within one standard error. notes: sentences. points: a list of Point. times, values: the best run's curve."""
+    """What `fit` found. str() is a report: the points, the values with their errors, the notes."""
 
-    def __init__(self, search):
+    best: dict[str, float]  #: values by the parameter's path, of the point with the least residual
+    residual: float  #: its rms difference from the measured curve, in the curve's unit
+    relative: float  #: the same, divided by the range of the curve
+    shift: float  #: s: time of the run = time of the measurement + shift
+    error: dict[str, float | None]  #: standard error by the parameter's path, in its unit; None: it cannot be determined
+    interval: dict[str, tuple[float, float]]  #: lowest and highest value that fit as well as the best, within one standard error
+    notes: list[str]  #: sentences on what the curve does not determine
+    points: list[Point]  #: all that were tried, in order
+    measured: Array  #: (n, 2): s and the curve's unit
+    times: Array  #: (m,) s, of the best run
+    values: Array  #: (m,) the best run's curve, in the curve's unit
+
+    def __init__(self, search: _Search) -> None:
         self.points = search.points
         best = min(search.points, key=lambda p: p.residual)
         self.best, self.residual, self.shift = best.values, best.residual, best.shift
-        self.ranges, self.measured = search.ranges, search.measured
+        self._ranges, self.measured = search.ranges, search.measured
         self.relative = best.residual / max(float(np.ptp(search.measured[:, 1])), 1e-300)
-        self.times, self.values = search.curves[tuple(best.values.values())]
+        self.times, self.values = (np.array(part) for part in search.curves[tuple(best.values.values())])
         self.error, self.interval, self.notes = {}, {}, []
         self._uncertainty()
 
-    def _uncertainty(self):
-        n, count = len(self.measured), len(self.ranges)
+    def _uncertainty(self) -> None:
+        n, count = len(self.measured), len(self._ranges)
         free = count + (1 if any(p.shift != self.shift for p in self.points) else 0)
-        places = np.array([[r.place(p.values[r.name]) for r in self.ranges] for p in self.points])
+        places = np.array([[r.place(p.values[r.name]) for r in self._ranges] for p in self.points])
         squares = n * np.array([p.residual for p in self.points]) ** 2
         best = int(np.argmin(squares))
         rise = squares[best] / max(n - free, 1)  # of the sum of squares, at one standard error
         curvature, noise = self._curvature(places, squares, best, rise)
         level = rise + 2 * noise  # runs differ among themselves, as particles do
-        for k, r in enumerate(self.ranges):
+        for k, r in enumerate(self._ranges):
             value, u = self.best[r.name], places[best, k]
             deviation = None if curvature is None else math.sqrt(2 * level * np.linalg.inv(curvature)[k, k])
             if count == 1:
@@ -294,7 +336,7 @@ class Fit:
                 self.notes.append(f"{r.name} has no {side} bound: values {text} fit as well as {value:.3g}, and {border:g} is the border of the range.")
 
     @staticmethod
-    def _crossings(places, squares, level):
+    def _crossings(places: Array, squares: Array, level: float) -> tuple[float, float]:
         """The interval outside which the sum of squares is above `level`, from straight lines between the tried places."""
         order = np.argsort(places)
         u, s = places[order], squares[order]
@@ -305,7 +347,7 @@ class Fit:
         return low, high
 
     @staticmethod
-    def _curvature(places, squares, best, rise):
+    def _curvature(places: Array, squares: Array, best: int, rise: float) -> tuple[Array | None, float]:
         """Second derivatives of the sum of squares, from a quadratic through the points about the best, and the rms of what it leaves.
         None: there are too few points, or it has no minimum."""
         count = places.shape[1]
@@ -330,19 +372,21 @@ class Fit:
             curvature[j, i] += value / size**2
         return (curvature if np.linalg.eigvalsh(curvature).min() > 0 else None), noise
 
-    def __str__(self):
-        lines = [f"{'run':>4}  " + "  ".join(f"{r.name:>18}" for r in self.ranges) + "      residual   shift, s"]
+    def __str__(self) -> str:
+        lines = [f"{'run':>4}  " + "  ".join(f"{r.name:>18}" for r in self._ranges) + "      residual   shift, s"]
         for k, p in enumerate(self.points):
             lines.append(f"{k + 1:>4}  " + "  ".join(f"{v:>18.6g}" for v in p.values.values()) + f"  {p.residual:>12.4g}  {p.shift:>9.4g}")
         for name, value in self.best.items():
             error = "" if self.error[name] is None else f" +- {self.error[name]:.2g}"
             lines.append(f"{name} = {value:.4g}{error}")
-        shift = f", the run is {self.shift:.3g} s later than the measurement" if self.shift else ""
+        late = "later" if self.shift > 0 else "earlier"
+        shift = f"; the run is {abs(self.shift):.3g} s {late} than the measurement" if self.shift else ""
         lines.append(f"rms difference {self.residual:.3g}, {100 * self.relative:.2g} % of the curve's range{shift}")
         return "\n".join(lines + self.notes)
 
-    def save(self, folder):
-        """Writes result.json and points.csv."""
+    def save(self, folder: Path) -> None:
+        """Writes result.json (best, error, interval, residual, relative, shift, notes) and points.csv (one row for each point) into a folder
+        that exists."""
         folder = pathlib.Path(folder)
         _write(folder / "result.json", json.dumps({"best": self.best, "error": self.error, "interval": self.interval, "residual": self.residual,
                                                    "relative": self.relative, "shift": self.shift, "notes": self.notes}, indent=2) + "\n")
@@ -351,18 +395,19 @@ class Fit:
             rows.writerow([*self.best, "residual", "shift"])
             rows.writerows([*p.values.values(), p.residual, p.shift] for p in self.points)
 
-    def plot(self, path, label="", unit=""):
-        """The measured curve with the best run, and the residual over each parameter."""
+    def plot(self, path: Path, label: str = "", unit: str = "") -> None:
+        """Writes a picture (PNG, or what the ending of `path` says): the measured curve with the best run, and the residual over each parameter,
+        with the interval shaded. label, unit: of the curve's axis. Needs Matplotlib."""
         import matplotlib
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
-        figure, axes = plt.subplots(1, 1 + len(self.ranges), figsize=(5.2 + 3.8 * len(self.ranges), 4.2), dpi=110, layout="constrained")
+        figure, axes = plt.subplots(1, 1 + len(self._ranges), figsize=(5.2 + 3.8 * len(self._ranges), 4.2), dpi=110, layout="constrained")
         axes[0].plot(self.times, self.values, color="#1769aa", linewidth=2, label=", ".join(f"{n} = {v:.3g}" for n, v in self.best.items()))
         axes[0].plot(self.measured[:, 0] + self.shift, self.measured[:, 1], "o", color="#c0392b", markersize=5, label="measured")
         axes[0].set(xlabel="time (s)", ylabel=f"{label} ({unit})" if unit else label)
         axes[0].locator_params(axis="x", nbins=6)
         axes[0].legend(frameon=False)
-        for axis, r in zip(axes[1:], self.ranges):
+        for axis, r in zip(axes[1:], self._ranges):
             axis.plot([p.values[r.name] for p in self.points], [p.residual for p in self.points], "o", color="0.45", markersize=4)
             axis.plot(self.best[r.name], self.residual, "o", color="#1769aa", markersize=8)
             axis.axvspan(*self.interval[r.name], color="#1769aa", alpha=0.12, linewidth=0)
@@ -373,55 +418,63 @@ class Fit:
         plt.close(figure)
 
 
-def fit(scene, parameters, measured, series, *, start=None, settings=None, seconds=None, shift=(0, 0), method=None, evaluations=40, tolerance=5e-3,
-        folder="fit", jobs=None, backend="cpu", frame=1 / 240, seed=1):
+def fit(scene: Mapping[str, Any] | Path, parameters: Mapping[str, Sequence[Any]], measured: ArrayLike, series: Series | str, *,
+        start: Start | str | None = None, settings: Mapping[str, Any] | None = None, seconds: float | None = None,
+        shift: Sequence[float] = (0, 0), method: str | None = None, evaluations: int = 40, tolerance: float = 5e-3, folder: Path = "fit",
+        jobs: int | None = None, backend: str = "cpu", frame: float = 1 / 240, seed: int = 1) -> Fit:
     """A Fit: the values of `parameters` with which a run of `scene` reproduces `measured` best.
 
-    scene       a dict, or a path of a scene file without colliders
-    parameters  {path: (low, high)} or {path: (low, high, "log")}, paths as in docs/parameters.md
-    measured    n x 2: time (s) and value (SI units), in the order of time
-    series      front, height, centre_of_mass_x, _y, _z, kinetic, potential, maximum_speed; or a function f(world, spacing) -> float
-    start       f(context, scene) -> World, for particles or walls that a scene cannot have; None: context.world(scene)
+    scene       a dict, or a path of a scene file; with colliders, bodies or surface flow it needs `start`
+    parameters  {path: (low, high)} or {path: (low, high, "log")}, paths and units as in docs/parameters.md
+    measured    (n, 2): time (s) and value (SI units), in the order of time
+    series      front, height, centre_of_mass_x, _y, _z (m), kinetic, potential (J), maximum_speed (m/s); or a function f(world, spacing) -> float
+                at the top of a file, spacing in m; or "FILE.py:FUNCTION"
+    start       f(context, scene) -> World, for particles or walls that a scene cannot have; or "FILE.py:FUNCTION"; None: context.world(scene)
     settings    {path: value} that all runs have
-    seconds     simulated time of a run; None: to the last measured time
+    seconds     simulated time of a run, s; None: to the last measured time
     shift       (low, high), s: the clock of the measurement may be behind that of the run by as much, which is fitted, too
     method      brent (one parameter), nelder-mead (several) or differential evolution; None: by the number of parameters
-    evaluations at most about as many runs; tolerance: of the values, as a share of the range
-    folder      of the kept runs
+    evaluations about the largest number of runs; tolerance: of the values, as a share of the range
+    folder      where runs are kept; it is made
     jobs        processes at the same time, where the method allows; None: as many as cores
-    """
+    backend     of the runs' contexts; series other than front and height need cpu; frame: s between two values of the curve; seed: of the random starts
+
+    BadInput: a wrong argument. Error: a run failed, or its series is not finite."""
     if isinstance(scene, (str, os.PathLike)):
         try:
-            scene = json.loads(pathlib.Path(scene).read_text(encoding="utf-8"))
+            whole = json.loads(pathlib.Path(scene).read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
-            raise FitError(f"the scene {scene} cannot be read: {error}") from error
+            raise BadInput(f"the scene {scene} cannot be read: {error}") from error
+    else:
+        whole = scene
     for part in NOT_OF_A_WORLD:
-        if scene.get(part) and start is None:
-            raise FitError(f"the scene has {part}, which a fit cannot make by itself: give start, a function that makes the world")
-    scene = {part: scene[part] for part in OF_A_WORLD if part in scene}
-    ranges = [Range(name, *values) for name, values in parameters.items()]
+        if whole.get(part) and start is None:
+            raise BadInput(f"the scene has {part}, which a fit cannot make by itself: give start, a function that makes the world")
+    ranges = [_Range(name, *values) for name, values in parameters.items()]
     if not ranges:
-        raise FitError("no parameter is to be found: name one with its range")
-    measured = np.array(measured, dtype=float)
-    if measured.ndim != 2 or measured.shape[1] != 2 or len(measured) < len(ranges) + 2 or not np.isfinite(measured).all():
-        raise FitError(f"the measured curve has the shape {measured.shape}: give finite times and values, at least {len(ranges) + 2} rows of two")
-    if (np.diff(measured[:, 0]) <= 0).any() or measured[0, 0] + shift[0] < 0:
-        raise FitError("the measured times must increase, and be at least 0 s with the shift added")
+        raise BadInput("no parameter is to be found: name one with its range")
+    curve = np.array(measured, dtype=float)
+    if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < len(ranges) + 2 or not np.isfinite(curve).all():
+        raise BadInput(f"the measured curve has the shape {curve.shape}: give finite times and values, at least {len(ranges) + 2} rows of two")
+    if (np.diff(curve[:, 0]) <= 0).any() or curve[0, 0] + shift[0] < 0:
+        raise BadInput("the measured times must increase, and be at least 0 s with the shift added")
     method = method or ("brent" if len(ranges) == 1 else "nelder-mead")
     if method not in METHODS:
-        raise FitError(f"method {method!r} is none of {', '.join(METHODS)}")
+        raise BadInput(f"method {method!r} is none of {', '.join(METHODS)}")
     if method == "brent" and len(ranges) > 1:
-        raise FitError(f"brent finds one parameter, not {len(ranges)}: use nelder-mead or differential evolution")
+        raise BadInput(f"brent finds one parameter, not {len(ranges)}: use nelder-mead or differential evolution")
     if callable(series):
         series = _named(series)
+    elif series in LATE and backend != "cpu":
+        raise BadInput(f"series {series} is some frames old on a GPU: set backend to cpu, or give a function that reads world.particles()")
     elif series not in SERIES:
         _function(series, "series")
-    seconds = float(measured[-1, 0] + shift[1]) if seconds is None else float(seconds)
-    if seconds < measured[-1, 0] + shift[1]:
-        raise FitError(f"a run of {seconds:g} s ends before the measured curve with its shift, {measured[-1, 0] + shift[1]:g} s: raise seconds")
-    job = {"scene": scene, "settings": dict(settings or {}), "series": series, "start": _named(start) if callable(start) else start, "backend": backend,
-           "seconds": seconds, "frame": frame, "threads": 0}
-    search = Search(job, ranges, measured, tuple(shift), folder, jobs or os.cpu_count() or 1)
+    seconds = float(curve[-1, 0] + shift[1]) if seconds is None else float(seconds)
+    if seconds < curve[-1, 0] + shift[1]:
+        raise BadInput(f"a run of {seconds:g} s ends before the measured curve with its shift, {curve[-1, 0] + shift[1]:g} s: raise seconds")
+    job = {"scene": {part: whole[part] for part in OF_A_WORLD if part in whole}, "settings": dict(settings or {}), "series": series,
+           "start": _named(start) if callable(start) else start, "backend": backend, "seconds": seconds, "frame": frame, "threads": 0}
+    search = _Search(job, ranges, curve, (float(shift[0]), float(shift[1])), folder, jobs or os.cpu_count() or 1)
     try:
         _search(search, method, evaluations, tolerance, seed)
         return Fit(search)
@@ -433,19 +486,20 @@ KEYS = {"scene", "parameters", "measured", "series", "start", "settings", "secon
         "backend", "frame", "seed", "label", "unit"}
 
 
-def fit_file(path):
-    """A Fit of FIT.json, whose paths are relative to it; writes result.json, points.csv and fit.png into its folder."""
+def fit_file(path: Path) -> Fit:
+    """A Fit of FIT.json (keys and units: docs/fitting.md), whose paths are relative to it; writes result.json, points.csv and fit.png into the
+    folder of the fit. BadInput, Error: as fit."""
     path = pathlib.Path(path)
     try:
         asked = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise FitError(f"{path} cannot be read: {error}") from error
+        raise BadInput(f"{path} cannot be read: {error}") from error
     for key in asked:
         if key not in KEYS:
-            raise FitError(f"{path}: {key} is no key of a fit; the keys are {', '.join(sorted(KEYS))}")
+            raise BadInput(f"{path}: {key} is no key of a fit; the keys are {', '.join(sorted(KEYS))}")
     for key in ("scene", "parameters", "measured", "series"):
         if key not in asked:
-            raise FitError(f"{path} lacks {key}")
+            raise BadInput(f"{path} lacks {key}")
     here = path.resolve().parent
     if isinstance(asked["scene"], str):
         asked["scene"] = here / asked["scene"]
@@ -461,12 +515,12 @@ def fit_file(path):
             numbers = rows[0 if _number(rows[0][0]) else 1:]
             curve = [[float(row[columns[0]]) * curve.get("time", 1), float(row[columns[1]]) * curve.get("value", 1)] for row in numbers]
         except (OSError, KeyError, ValueError, IndexError) as error:
-            raise FitError(f"{path}: the measured curve cannot be read: {error!r}; it needs file, columns [time, value], and factors time and value "
+            raise BadInput(f"{path}: the measured curve cannot be read: {error!r}; it needs file, columns [time, value], and factors time and value "
                            "to s and SI units") from error
     try:
         parameters = {name: (r["from"], r["to"], r.get("scale", "linear")) for name, r in asked.pop("parameters").items()}
     except (TypeError, KeyError, AttributeError) as error:
-        raise FitError(f'{path}: parameters are {{"fluid.viscosity": {{"from": 1e-6, "to": 1e-2, "scale": "log"}}}}') from error
+        raise BadInput(f'{path}: parameters are {{"fluid.viscosity": {{"from": 1e-6, "to": 1e-2, "scale": "log"}}}}') from error
     label, unit = asked.pop("label", asked["series"] if isinstance(asked["series"], str) else ""), asked.pop("unit", "")
     asked["folder"] = here / asked.get("folder", path.stem)
     found = fit(asked.pop("scene"), parameters, curve, asked.pop("series"), **asked)
@@ -478,7 +532,7 @@ def fit_file(path):
     return found
 
 
-def _number(text):
+def _number(text: str) -> bool:
     try:
         float(text)
         return True
@@ -486,13 +540,14 @@ def _number(text):
         return False
 
 
-def main(arguments):
+def main(arguments: Sequence[str]) -> int:
+    """The command: arguments after its name; returns the exit status."""
     if len(arguments) != 1 or arguments[0] in ("-h", "--help"):
         print("usage: python3 -m rivulet.fit FIT.json\n\nFinds the parameters of a scene that reproduce a measured curve; docs/fitting.md has the keys.")
         return 0 if arguments in (["-h"], ["--help"]) else 2
     try:
         print(fit_file(arguments[0]))
-    except (FitError, ImportError, RuntimeError) as error:
+    except (ImportError, RuntimeError) as error:
         print(f"rivulet.fit: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:

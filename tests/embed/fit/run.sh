@@ -12,6 +12,6 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 RIVULET_LIBRARY="$(cd "$1" && pwd)/librivulet.so"
 export RIVULET_LIBRARY PYTHONDONTWRITEBYTECODE=1 MPLCONFIGDIR="$work"
-export PYTHONPATH="$root/fluid/python:$root/fluid/capi:$root/fluid/python/rivulet:$root/demos/fit"
+export PYTHONPATH="$root/fluid/python:$root/demos/fit"
 cd "$work"
 /usr/bin/python3 "$here/check.py"

@@ -10,6 +10,7 @@ import sys
 import tempfile
 
 import rivulet
+import rivulet.fit
 from rivulet import _library, _structs
 
 WITHOUT_STRUCT = {"jobs": "a job system in Python would hold each thread of the library until the lock of the interpreter is free",
@@ -86,12 +87,13 @@ if shutil.which("cc"):
         said = subprocess.run(["./offsets"], cwd=folder, capture_output=True, text=True)
         missing += said.stdout.splitlines()
 # What a program calls says what it is.
-for name in rivulet.__all__:
-    public = getattr(rivulet, name)
-    members = {key: value for key, value in vars(public).items() if not key.startswith("_")} if isinstance(public, type) else {}
-    for key, value in {"": public, **members}.items():
-        if (callable(value) or isinstance(value, property)) and not (getattr(value, "__doc__", None) or "").strip():
-            missing.append(f"rivulet.{name}{key and '.' + key} has no docstring")
+for module in (rivulet, rivulet.fit):
+    for name in module.__all__:
+        public = getattr(module, name)
+        members = {key: value for key, value in vars(public).items() if not key.startswith("_")} if isinstance(public, type) else {}
+        for key, value in {"": public, **members}.items():
+            if (callable(value) or isinstance(value, property)) and not (getattr(value, "__doc__", None) or "").strip():
+                missing.append(f"{module.__name__}.{name}{key and '.' + key} has no docstring")
 for each in missing:
     print(each)
 print(f"{len(functions)} functions and {len(structs)} structs of rivulet.h were compared, {len(offsets)} offsets and sizes")

@@ -178,7 +178,7 @@ class Picture:
         names = (ctypes.c_uint * 2)(self.__dict__.get("_colour", 0), self.__dict__.get("_depth", 0))
         framebuffer = ctypes.c_uint(self.__dict__.get("_framebuffer", 0))
         self._colour = self._depth = self._framebuffer = 0
-        if any(names):
+        if any(names) and not self._gl.inherited():
             with self._gl as gl:
                 gl.call("glDeleteFramebuffers", "ip", 1, ctypes.addressof(framebuffer))
                 gl.call("glDeleteTextures", "ip", 2, ctypes.addressof(names))

@@ -59,7 +59,7 @@ class Recording:
     def close(self) -> None:
         """Ends the recording: the file is complete. Error: it cannot be written."""
         world, self._world = self._world, None
-        if world is not None and world._pointer is not None:
+        if world is not None and world._owned is not None and not world._owned.inherited():
             world._call("world_record", None)
 
     def __enter__(self) -> Recording:

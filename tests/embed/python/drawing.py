@@ -1,4 +1,5 @@
 """drawing.py FOLDER: pictures as arrays: where the water is, what hides it, light and conventions; skins' maps; other threads. Exit 77: no OpenGL."""
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -206,6 +207,39 @@ for thread in threads:
 for thread in threads:
     thread.join()
 assert len(seen) == 4 and len(set(seen)) <= 2, "contexts of other threads changed a picture"
+
+
+# A process that was forked is told at once that it cannot draw, and at its end leaves alone what its parent made.
+def drawn(_):
+    try:
+        with rivulet.Context(backend="cpu", off_screen=True) as own, own.world(POOL) as its:
+            return its.picture(camera, 64, 48).shape
+    except rivulet.Error as error:
+        return str(error)
+
+
+with rivulet.Context(backend="cpu", off_screen=True) as context, context.world(POOL) as world, context.picture(64, 48) as picture:
+    world.draw(camera, picture)
+    before = world.picture(camera, 64, 48)
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        said = pool.map_async(drawn, range(2)).get(60)
+    assert all('get_context("spawn")' in each for each in said), said
+    child = os.fork()
+    if child == 0:
+        for work in (lambda: world.picture(camera, 64, 48), picture.colour):
+            try:
+                work()
+                os._exit(3)
+            except rivulet.Error as error:
+                if "spawn" not in str(error):
+                    os._exit(4)
+        world.step(1 / 60)
+        picture.close()
+        world.close()
+        sys.exit(0)
+    _, status = os.waitpid(child, 0)
+    assert os.waitstatus_to_exitcode(status) == 0, status
+    assert (world.picture(camera, 64, 48) == before).all()
 # Without a driver there is a sentence.
 program = "import rivulet\ntry:\n    rivulet.Context(off_screen=True)\nexcept rivulet.Error as error:\n    print(error)"
 said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env={**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/none.json"})

@@ -7,7 +7,7 @@ from ctypes import c_void_p
 from types import TracebackType
 from typing import Any, NoReturn, TypeVar
 
-from ._library import Error, call, lib
+from ._library import BadInput, Error, call, lib
 from ._off_screen import OffScreen
 
 _counting = threading.RLock()  # which a destructor may take while its own thread has it
@@ -83,23 +83,28 @@ class Handle:
     """Closed at the end of its `with`, by close(), or with the last reference."""
 
     _owned: Owned | None = None
-    _instead = "create another"
+    _instead = _anew = "create another"  # than to copy it; than one that is closed
 
     def _own(self, kind: str, pointer: c_void_p, parent: Owned | None, gl: OffScreen | None, *keeps: Any) -> None:
         self._owned = Owned(kind, pointer, parent, gl, list(keeps))
 
     @property
-    def _pointer(self) -> c_void_p | None:
-        return None if self._owned is None else self._owned.pointer
+    def _pointer(self) -> c_void_p:
+        return self._open().pointer
+
+    def _open(self) -> Owned:
+        if self._owned is None:
+            raise BadInput(f"the {type(self).__name__} is closed: {self._anew}")
+        return self._owned
 
     def _call(self, name: str, *arguments: Any) -> None:
         """Calls rivulet_`name` of this handle, with its OpenGL context where that is needed."""
-        owned = self._owned
-        if owned is None or owned.gl is None or (not owned.gl.simulates and name not in _DRAWING):
-            call(name, self._pointer, *arguments)
+        owned = self._open()
+        if owned.gl is None or (not owned.gl.simulates and name not in _DRAWING):
+            call(name, owned.pointer, *arguments)
             return
         with owned.gl:
-            call(name, self._pointer, *arguments)
+            call(name, owned.pointer, *arguments)
 
     def close(self) -> None:
         """Releases it. What was made from it stays valid until it is closed itself. Error: its OpenGL context is in use on another thread; close

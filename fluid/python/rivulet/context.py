@@ -46,8 +46,8 @@ class Context(Handle):
         gl = OffScreen() if off_screen else None
         finder = gl.find if gl is not None else None if find is None else _find_of(find)
         options = struct(c.ContextOptions, find=None if finder is None else ctypes.cast(finder, c_void_p), backend=text_of(backend),
-                         device=text_of(device), log=said, memory_limit=whole(memory_limit, 0, 2**63, "memory_limit"),
-                         threads=whole(threads, 0, 2**31, "threads"), plain_state=int(plain_state), clouds=clouds,
+                         device=text_of(device), log=said, memory_limit=whole(memory_limit, 0, 2**63 - 1, "memory_limit"),
+                         threads=whole(threads, 0, 2**31 - 1, "threads"), plain_state=int(plain_state), clouds=clouds,
                          sky_horizon=vector(sky_horizon, 3, "sky_horizon"), sky_zenith=vector(sky_zenith, 3, "sky_zenith"),
                          sky_sun=vector(sky_sun, 3, "sky_sun"))
         pointer = c_void_p()
@@ -106,7 +106,7 @@ class Context(Handle):
         velocities (n, 3), m/s, None: at rest.
         body_host moves the bodies: advance(loads, gravity, seconds, states) changes `states`, an array with the fields position (m), rotation
         (x y z w), velocity (m/s) and spin (rad/s), by loads["force"] (N) and loads["torque"] (N m); reset(states) gets the states
-        of t = 0; added(id, state) and removed(id), if it has them, hear of bodies that come and go. Its arrays are copies, and what it raises
+        of t = 0; added(id, state) and removed(id), if it has them, are called when bodies come and go. Its arrays are copies, and what it raises
         comes out of the call. None: bodies collide with nothing but fluid.
         skins_bring: m^3 of water that drops of skins bring in 10 s, see World.step_skins; 0: none.
         BadInput: an unknown key, or a value out of its range."""

@@ -182,7 +182,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         assert most > 0 and stats.left > 0 and abs(stats.left - air.in_air - air.lost - air.into_water) < 1e-13, (stats, air)
         refused(lambda: world.step_skins([skin], 1 / 60, inputs=[{}, {}]), "2 inputs", "1 skins")
 
-    # A host of bodies hears of those that come and go.
+    # A host of bodies is called for those that come and go.
     class Host:
         said = []
 

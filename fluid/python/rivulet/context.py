@@ -35,12 +35,13 @@ class Context(Handle):
     off_screen: with an OpenGL context of its own, without a window, for World.picture and all that draws; it is current during calls only.
     find: instead the caller's own OpenGL context, which must be current in calls that need it: a function that returns the address of one of
     OpenGL's functions, find(name); plain_state: OpenGL's state is not restored, as in rivulet.h.
-    sky_horizon, sky_zenith (3,): what the water reflects, radiance; sky_sun: (3,), towards the sun; all 0: a grey-blue sky; clouds: 0 to 1.
+    sky_horizon, sky_zenith (3,): what the water reflects, radiance, by default a bright sky; sky_sun: (3,), towards the sun; all 0: a darker,
+    grey-blue sky; clouds: 0 to 1.
     BadInput: no such backend. Error: it is not there, or there is no OpenGL 4.5."""
 
     def __init__(self, backend: str = "auto", device: str | None = None, log: Callable[[int, str], None] | None = None, memory_limit: int = 0,
                  threads: int = 0, off_screen: bool = False, find: Callable[[str], int | None] | None = None, plain_state: bool = False,
-                 sky_horizon: ArrayLike = (0, 0, 0), sky_zenith: ArrayLike = (0, 0, 0), sky_sun: ArrayLike = (0, 0, 0),
+                 sky_horizon: ArrayLike = (2.2, 2.4, 2.6), sky_zenith: ArrayLike = (0.8, 1.1, 1.6), sky_sun: ArrayLike = (0, 0, 0),
                  clouds: float = 0.0) -> None:
         said = c.LOG(0) if log is None else _log_of(log)
         gl = OffScreen() if off_screen else None

@@ -15,6 +15,7 @@ from ._off_screen import OffScreen
 
 Array = NDArray[Any]
 _FOGS = {"exponential": 1, "exponential squared": 2, "linear": 3}
+_BACKGROUND = (0.24, 0.26, 0.29), (0.07, 0.08, 0.10)  # sRGB, at the top and at the bottom: dark, so that reflections show the water's shape
 _COLOURS = {"automatic": 0, "linear": 1, "sRGB": 2}
 
 
@@ -120,6 +121,12 @@ class Target:
     colours: str = "automatic"
 
 
+def _default_background(size: tuple[int, int], linear: bool) -> Array:
+    share = np.linspace(0, 1, size[0])[:, None, None]
+    colours = (1 - share) * np.array(_BACKGROUND[0]) + share * np.array(_BACKGROUND[1])
+    return np.broadcast_to(((colours + 0.055) / 1.055) ** 2.4 if linear else colours, (*size, 3))
+
+
 class Picture:
     """Colour and depth off screen, into which worlds are drawn one after the other; made by Context.picture. Closed at the end of its `with`,
     by close(), or with the last reference."""
@@ -139,11 +146,11 @@ class Picture:
             self.close()
             raise Error(f"this machine's OpenGL has no room for a picture of {width} x {height}")
 
-    def fill(self, background: ArrayLike = (0.8, 0.85, 0.9), depth: ArrayLike = 1.0) -> None:
+    def fill(self, background: ArrayLike | None = None, depth: ArrayLike = 1.0) -> None:
         """Replaces the whole picture. background: one colour of 3 or 4 values, or an image (h, w, 3 or 4), row 0 at the top: sRGB, 0 to 1 or
-        uint8 of 0 to 255; of a linear picture linear radiance. depth: 0 near .. 1 far, one or (h, w); see Camera.depths. Copied."""
+        uint8 of 0 to 255; of a linear picture linear radiance; None: dark grey, darker downwards. depth: 0 near .. 1 far, one or (h, w); see Camera.depths. Copied."""
         size, kind = (self.height, self.width), np.float32 if self.linear else np.uint8
-        given = np.asarray(background)
+        given = np.asarray(_default_background(size, self.linear) if background is None else background)
         if given.dtype == np.uint8 and self.linear:
             raise BadInput("the background is of bytes, and the picture is linear: give floats")
         if given.dtype != np.uint8:
@@ -282,7 +289,7 @@ class Drawn(Handle):
             finally:
                 gl.call("glDeleteTextures", "ip", 1, ctypes.addressof(name))
 
-    def picture(self, camera: Camera | View, width: int = 480, height: int = 360, background: ArrayLike = (0.8, 0.85, 0.9),
+    def picture(self, camera: Camera | View, width: int = 480, height: int = 360, background: ArrayLike | None = None,
                 depth: ArrayLike = 1.0, linear: bool = False, **light: Any) -> Array:
         """Its picture, (height, width, 4), row 0 at the top, uint8, sRGB; linear: float32, linear radiance. background and depth as of
         Picture.fill; light: as of draw. BadInput: the context is not of off_screen."""

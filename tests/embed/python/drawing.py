@@ -59,6 +59,17 @@ with context, context.world(POOL) as world:
         expected = -(camera.view(1.5).view @ [*place, 1])[2]
         assert abs(camera.distances(depth)[row, column] - expected) < 0.04, (camera.distances(depth)[row, column], expected)
     assert np.allclose(camera.depths(camera.distances(depth)), depth, atol=1e-6)
+    # With all defaults water differs from what is behind it: by more than 30 of 255 on its surface, more than 8 on its side.
+    with context.picture(*SIZE) as picture:
+        behind = picture.colour()[..., :3].astype(int)
+        contrast = np.abs(world.picture(camera, *SIZE)[..., :3].astype(int) - behind).max(axis=2)
+    for place, least in (((0.3, 0.32, 0.4), 30), ((0.7, 0.32, 0.8), 30), ((0.3, 0.15, 1), 8), ((0.7, 0.15, 1), 8)):
+        column, row = pixel(place)
+        assert np.median(contrast[row - 3:row + 4, column - 3:column + 4]) > least, (place, contrast[row - 3:row + 4, column - 3:column + 4])
+    # A linear picture has the same background.
+    with context.picture(*SIZE, linear=True) as picture:
+        bright = picture.colour()[..., :3]
+    assert np.abs(255 * (1.055 * bright ** (1 / 2.4) - 0.055) - behind).max() < 1
     # A background that is nearer hides the water, in the left half here; an image is seen where there is no water.
     image, near = np.zeros((HEIGHT, WIDTH, 3)), np.ones((HEIGHT, WIDTH))
     image[:20], near[:, :WIDTH // 2] = (1, 0, 0), camera.depths(0.5)
@@ -125,7 +136,7 @@ with context, context.world(POOL) as world:
         assert other.device.startswith("gl:")
         for _ in range(3):
             its.step(1 / 60)
-        assert (its.picture(camera, *SIZE)[..., :3] != [204, 217, 230]).any() and its.buffers()["position"] > 0
+        assert (its.picture(camera, *SIZE) != other.picture(*SIZE).colour()).any() and its.buffers()["position"] > 0
         refused(lambda: its.rows(), "particles", "GPU")
         refused(lambda: world.draw(camera, other.picture(*SIZE)), "another context")
     assert len(world.picture(camera, *SIZE))

@@ -79,15 +79,15 @@ with context, context.world(POOL) as world:
     # Matrices of one's own: a mirrored projection mirrors the picture.
     view = camera.view(WIDTH / HEIGHT)
     mirrored = world.picture(rivulet.View(view.view, np.diag([-1, 1, 1, 1]) @ view.projection, camera.near, camera.far), *SIZE, background=grey)
-    assert np.abs(mirrored[:, ::-1].astype(int) - colour).mean() < 2
+    assert np.abs(mirrored[:, ::-1].astype(int) - colour).mean() < 0.05  # a shift by one pixel is 0.07
     # Linear radiance: encoded, it is the picture in bytes.
     linear = world.picture(camera, *SIZE, background=np.array([0.2140] * 3), linear=True)
     encoded = np.where(linear < 0.0031308, 12.92 * linear, 1.055 * np.clip(linear, 0, 1) ** (1 / 2.4) - 0.055)
     assert linear.dtype == np.float32 and np.abs(255 * encoded[..., :3] - colour[..., :3])[~wet].max() < 1
-    assert np.abs(255 * encoded[..., :3] - colour[..., :3]).mean() < 6
+    assert np.abs(255 * encoded[..., :3] - colour[..., :3]).max() <= 1  # a byte is rounded or cut
     # Fog that is dense hides the water's own colours; a light of one colour tints its highlights; a shadow map of zeros takes light away.
     fogged = world.picture(camera, *SIZE, background=(0, 0, 1), fog=rivulet.Fog("exponential", (0, 0, 1), density=20))
-    assert np.abs(fogged[wet].astype(int) - [0, 0, 255, 255]).max() < 12
+    assert np.abs(fogged[wet].astype(int) - [0, 0, 255, 255]).max() <= 1  # exp(-20 / m * 1 m) is 2e-9
     red = world.picture(camera, *SIZE, background=grey, light=rivulet.Light((0, 1, 0), (20, 0, 0)))
     lit = world.picture(camera, *SIZE, background=grey, light=rivulet.Light((0, 1, 0), (20, 20, 20)))
     assert (lit[wet].astype(int) - red[wet])[:, 1:3].sum() > 0 and (red[..., 0] == lit[..., 0]).mean() > 0.9

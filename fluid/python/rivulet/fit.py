@@ -578,7 +578,7 @@ def main(arguments: Sequence[str]) -> int:
         return 0 if arguments in (["-h"], ["--help"]) else 2
     try:
         print(fit_file(arguments[0]))
-    except (ImportError, RuntimeError) as error:
+    except (ImportError, OSError, RuntimeError) as error:  # OSError: the disk is full
         print(f"rivulet.fit: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:

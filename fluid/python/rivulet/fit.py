@@ -19,6 +19,7 @@ import csv
 import hashlib
 import importlib.util
 import inspect
+import io
 import json
 import math
 import multiprocessing
@@ -159,9 +160,14 @@ def _run(job: dict[str, Any]) -> Curve:
 
 def _write(path: Path, text: str) -> None:
     part = f"{path}.part{os.getpid()}"
-    with open(part, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.replace(part, path)
+    try:
+        with open(part, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+        os.replace(part, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            os.remove(part)
+        raise Error(f"{path} cannot be written: {error.strerror}") from error
 
 
 # --- the search --------------------------------------------------------------------------------------------------------------------------------
@@ -442,14 +448,15 @@ class Fit:
 
     def save(self, folder: Path) -> None:
         """Writes result.json (best, error, interval, residual, relative, shift, notes) and points.csv (one row for each point) into a folder
-        that exists."""
+        that exists. Error: they cannot be written."""
         folder = pathlib.Path(folder)
         _write(folder / "result.json", json.dumps({"best": self.best, "error": self.error, "interval": self.interval, "residual": self.residual,
                                                    "relative": self.relative, "shift": self.shift, "notes": self.notes}, indent=2) + "\n")
-        with open(folder / "points.csv", "w", newline="", encoding="utf-8") as file:
-            rows = csv.writer(file)
-            rows.writerow([*self.best, "residual", "shift"])
-            rows.writerows([*p.values.values(), p.residual, p.shift] for p in self.points)
+        text = io.StringIO()
+        rows = csv.writer(text)
+        rows.writerow([*self.best, "residual", "shift"])
+        rows.writerows([*p.values.values(), p.residual, p.shift] for p in self.points)
+        _write(folder / "points.csv", text.getvalue())
 
     def plot(self, path: Path, label: str = "", unit: str = "") -> None:
         """Writes a picture (PNG, or what the ending of `path` says): the measured curve with the best run, and the residual over each parameter,
@@ -578,7 +585,7 @@ def main(arguments: Sequence[str]) -> int:
         return 0 if arguments in (["-h"], ["--help"]) else 2
     try:
         print(fit_file(arguments[0]))
-    except (ImportError, OSError, RuntimeError) as error:  # OSError: the disk is full
+    except (ImportError, OSError, RuntimeError) as error:  # OSError: of the plot
         print(f"rivulet.fit: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:

@@ -1,9 +1,10 @@
 """Fits whose answers are known: the decay of a wave of shear, and free fall."""
-import json
-import os
 import contextlib
 import io
+import json
+import os
 import pathlib
+import resource
 import signal
 import subprocess
 import sys
@@ -154,6 +155,12 @@ def main():
     # On OpenCL a fit of the kinetic energy compared frames with the numbers of earlier ones.
     refused(lambda: rivulet.fit.fit(drop, {"fluid.viscosity": (0, 1)}, curve, "kinetic", backend="cl"), "kinetic", "set backend to cpu")
     check_files(asked)
+    # A run that cannot be kept, as on a full disk, ends the fit with a sentence, and nothing is left of it.
+    pathlib.Path("full.json").write_text(json.dumps({**asked, "folder": "full"}))
+    limits = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (64, 64))
+    said = subprocess.run([*command, "full.json"], capture_output=True, text=True, preexec_fn=limits)
+    assert said.returncode == 1 and said.stderr.count("\n") == 1 and "cannot be written" in said.stderr, said
+    assert not list(pathlib.Path("full/runs").iterdir())
     # Runs at a time: as many as this process has cores.
     cores = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(cores)})

@@ -148,7 +148,8 @@ class Picture:
 
     def fill(self, background: ArrayLike | None = None, depth: ArrayLike = 1.0) -> None:
         """Replaces the whole picture. background: one colour of 3 or 4 values, or an image (h, w, 3 or 4), row 0 at the top: sRGB, 0 to 1 or
-        uint8 of 0 to 255; of a linear picture linear radiance; None: dark grey, darker downwards. depth: 0 near .. 1 far, one or (h, w); see Camera.depths. Copied."""
+        uint8 of 0 to 255; of a linear picture linear radiance; None: dark grey, darker downwards. depth: 0 near .. 1 far, one or (h, w); see
+        Camera.depths. Copied. BadInput: other values or shapes."""
         size, kind = (self.height, self.width), np.float32 if self.linear else np.uint8
         given = np.asarray(_default_background(size, self.linear) if background is None else background)
         if given.dtype == np.uint8 and self.linear:

@@ -1,10 +1,14 @@
 // Zarr, version 2: a folder for each array, with JSON and a file for each chunk. https://zarr.readthedocs.io/en/stable/spec/v2.html
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -37,9 +41,44 @@ std::string shuffled(const std::string& bytes, size_t size) {
     return out;
 }
 
+// The hidden name that a folder has until it is complete: start, process and end. The start has the machine's name, because machines that
+// share a disk do not share numbers of processes.
+struct HiddenName {
+    explicit HiddenName(const std::string& path) : folder(fs::absolute(fs::path(path)).parent_path()) {
+        std::array<char, 65> host = {};
+        (void)::gethostname(host.data(), host.size() - 1);
+        start = fmt::format(".rivulet-{}-", host.data());
+        constexpr size_t kEnd = 100;  // bytes: the whole must not be too long for a name
+        std::string name = fs::path(path).filename().string();
+        if (name.size() > kEnd) name.erase(0, name.size() - kEnd);
+        end = "-" + name;
+    }
+
+    std::string ofThisProcess() const { return (folder / fmt::format("{}{}{}", start, ::getpid(), end)).string(); }
+
+    // Removes folders of processes of this machine that were killed.
+    void removeLeft() const {
+        std::error_code error;
+        for (fs::directory_iterator at(folder, error), last; !error && at != last; at.increment(error)) {
+            const std::string name = at->path().filename().string();
+            if (name.size() <= start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end)) continue;
+            const char* const number = name.data() + start.size();
+            const char* const after = name.data() + name.size() - end.size();
+            pid_t process = 0;
+            const auto [read, wrong] = std::from_chars(number, after, process);
+            if (wrong != std::errc() || read != after || process <= 0) continue;
+            std::error_code ignored;
+            if (process == ::getpid() || (::kill(process, 0) != 0 && errno == ESRCH)) fs::remove_all(at->path(), ignored);
+        }
+    }
+
+    fs::path folder;
+    std::string start, end;
+};
+
 class Zarr {
   public:
-    Zarr(std::string path, size_t chunk) : path_(std::move(path)), part_(fmt::format("{}.part{}", path_, ::getpid())), chunk_(chunk) {}
+    Zarr(std::string path, size_t chunk) : path_(std::move(path)), hidden_(path_), part_(hidden_.ofThisProcess()), chunk_(chunk) {}
     Zarr(const Zarr&) = delete;
     Zarr& operator=(const Zarr&) = delete;
     ~Zarr() {
@@ -47,7 +86,12 @@ class Zarr {
         fs::remove_all(part_, error);
     }
 
-    Status begin() const { return addFolder(part_); }
+    Status begin() const {
+        hidden_.removeLeft();
+        std::error_code error;
+        fs::create_directory(part_, error);
+        return error ? Status(failed(fmt::format("{} cannot be written: {}", path_, error.message()))) : ok();
+    }
 
     Status put(const DataVariable& variable, size_t frame, size_t count, const void* values) {
         const auto [at, added] = arrays_.try_emplace(variable.name, Array{variable, {}});
@@ -198,7 +242,9 @@ class Zarr {
         return putJson(axis.name + "/.zattrs", fmt::format(R"({{"_ARRAY_DIMENSIONS": ["{}"]}})", axis.name));
     }
 
-    std::string path_, part_;
+    std::string path_;
+    HiddenName hidden_;
+    std::string part_;
     size_t chunk_;
     std::map<std::string, Array> arrays_;
     std::map<std::string, std::string> json_;  // by name

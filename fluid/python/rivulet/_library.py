@@ -91,28 +91,60 @@ def version() -> str:
     return str(lib.rivulet_version().decode())
 
 
+# Remedies of the library in C, and the same in Python.
+WORDS = {"set rivulet_context_options.find": "make the Context with off_screen=True, or with find",
+         "copy them with rivulet_world_particles": "copy them with World.particles()",
+         "set rivulet_body.mesh": "give the Body a mesh",
+         "a stop is asked with rivulet_context_stop": "a stop is asked with Context.stop()",
+         "is set with rivulet_world_set_sources": "is set with World.set_sources()",
+         "end that with path NULL first": "close its Recording first",
+         "mesh.uvs is NULL": "the Mesh has no uvs"}
+
+
 def call(name: str, *arguments: Any) -> None:
     """Calls rivulet_`name`. Error, BadInput: with the library's sentence."""
     why = c.Why()
     status = functions[name](*arguments, why)
     if status != 0:
-        raise (BadInput if status == 2 else Error)(why.message.decode(errors="replace"))
+        sentence = why.message.decode(errors="replace")
+        for ours, theirs in WORDS.items():
+            sentence = sentence.replace(ours, theirs)
+        raise (BadInput if status == 2 else Error)(sentence)
 
 
 Struct = TypeVar("Struct", bound=ctypes.Structure)
 
 
 def struct(of: type[Struct], **fields: Any) -> Struct:
-    """A struct that begins with its `size`."""
-    return of(size=ctypes.sizeof(of), **fields)
+    """A struct that begins with its `size`. BadInput: a member that is no number, where one belongs."""
+    try:
+        return of(size=ctypes.sizeof(of), **fields)
+    except (TypeError, ctypes.ArgumentError):
+        for name, value in fields.items():
+            try:
+                of(**{name: value})
+            except (TypeError, ctypes.ArgumentError):
+                raise BadInput(f"{name} is {value!r}: give a number") from None
+        raise
 
 
 def array_of(values: ArrayLike, shape: tuple[int, ...], what: str, dtype: Any = np.float32) -> NDArray[Any]:
     """A contiguous array of that type and shape, where -1 is any length: `values` itself where it is one already."""
-    array = np.ascontiguousarray(values, dtype)
-    if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape)):
-        raise BadInput(f"{what} has the shape {array.shape}: give {shape}, where -1 is any length")
+    try:
+        array = np.asarray(values, dtype, order="C")
+    except (TypeError, ValueError, OverflowError) as error:
+        raise BadInput(f"{what} is no array of {np.dtype(dtype)}: {error}") from None
+    if not _fits(array, shape):
+        raise BadInput(f"{what} has the shape {array.shape}: give {_text_of_shape(shape)}")
     return array
+
+
+def _fits(array: NDArray[Any], shape: tuple[int, ...]) -> bool:
+    return array.ndim == len(shape) and all(n in (-1, m) for n, m in zip(shape, array.shape))
+
+
+def _text_of_shape(shape: tuple[int, ...]) -> str:
+    return f"{shape}, where -1 is any length" if -1 in shape else str(shape)
 
 
 def array_or_none(values: ArrayLike | None, shape: tuple[int, ...], what: str) -> NDArray[Any] | None:
@@ -121,10 +153,11 @@ def array_or_none(values: ArrayLike | None, shape: tuple[int, ...], what: str) -
 
 def room_of(array: NDArray[Any], shape: tuple[int, ...], what: str, dtype: Any = np.float32) -> NDArray[Any]:
     """An array of the caller's own that the library writes into."""
-    fits = array.ndim == len(shape) and all(n in (-1, m) for n, m in zip(shape, array.shape))
-    if not fits or array.dtype != dtype or not array.flags.c_contiguous or not array.flags.writeable:
-        raise BadInput(f"{what} is {array.dtype} of the shape {array.shape}: give a contiguous, writable array of {np.dtype(dtype)}, {shape}, "
-                       "where -1 is any length")
+    if not isinstance(array, np.ndarray):
+        raise BadInput(f"{what} is {array!r}: give an array of {np.dtype(dtype)}, {_text_of_shape(shape)}")
+    if not _fits(array, shape) or array.dtype != dtype or not array.flags.c_contiguous or not array.flags.writeable:
+        raise BadInput(f"{what} is {array.dtype} of the shape {array.shape}: give a contiguous, writable array of {np.dtype(dtype)}, "
+                       f"{_text_of_shape(shape)}")
     return array
 
 
@@ -149,11 +182,20 @@ def array_at(memory: Any, kind: np.dtype[Any]) -> NDArray[Any]:
     return array
 
 
+def _plain(value: Any) -> Any:
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    raise TypeError(f"JSON has no {type(value).__name__}")
+
+
 def text_of(scene: Any) -> bytes | None:
     """A text as it is, and what else a JSON text can hold as that."""
     if scene is None:
         return None
-    text = scene if isinstance(scene, str) else json.dumps(scene, default=lambda value: value.tolist())  # of NumPy's
+    try:
+        text = scene if isinstance(scene, str) else json.dumps(scene, default=_plain)
+    except (TypeError, ValueError) as error:  # also: it holds itself
+        raise BadInput(f"{error}: give a dict of numbers, texts, lists and dicts, or a JSON text") from None
     if "\0" in text:
         raise BadInput("a text contains a character of value 0: remove it")
     return text.encode()
@@ -161,6 +203,51 @@ def text_of(scene: Any) -> bytes | None:
 
 def whole(value: float, low: int, high: int, what: str) -> int:
     """`value` as an int, checked against its range in C."""
-    if int(value) != value or not low <= value <= high:
-        raise BadInput(f"{what} is {value}: give a whole number from {low} to {high}")
-    return int(value)
+    try:
+        number = int(value)
+        if number == value and low <= number <= high:
+            return number
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise BadInput(f"{what} is {value!r}: give a whole number from {low} to {high}")
+
+
+def number_of(value: float, what: str) -> float:
+    """For an argument of C that is a double."""
+    try:
+        if not isinstance(value, (str, bytes)):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise BadInput(f"{what} is {value!r}: give a number")
+
+
+def seconds_of(value: float) -> float:
+    seconds = number_of(value, "seconds")
+    if seconds < 0:
+        raise BadInput(f"seconds is {value!r}: give 0 or more; time runs forwards")
+    return seconds
+
+
+def path_of(path: Any) -> bytes:
+    try:
+        return os.fsencode(path)
+    except (TypeError, ValueError):
+        raise BadInput(f"the path is {path!r}: give a text or a pathlib.Path") from None
+
+
+Kind = TypeVar("Kind")
+
+
+def of_kind(value: Any, kind: type[Kind], what: str) -> Kind:
+    """An object of the package."""
+    if not isinstance(value, kind):
+        raise BadInput(f"{what} is {value!r}: give a {kind.__name__}")
+    return value
+
+
+def each_of(values: Any, kind: type[Kind], what: str) -> list[Kind]:
+    """A sequence of objects of the package."""
+    if not isinstance(values, (list, tuple)):
+        raise BadInput(f"{what} is {values!r}: give a list of {kind.__name__}")
+    return [of_kind(value, kind, f"{what}[{k}]") for k, value in enumerate(values)]

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import threading
 from ctypes import c_char_p, c_int, c_ssize_t, c_uint, c_void_p
 from types import TracebackType
@@ -16,6 +17,12 @@ _DRAW, _READ = 0x3059, 0x305A
 _ATTRIBUTES = (c_int * 7)(0x3098, 4, 0x30FB, 5, 0x30FD, 1, 0x3038)
 _SOFTWARE = (b"llvmpipe", b"softpipe", b"swrast")
 _REMEDY = "install a driver (on Debian: apt-get install libegl-mesa0 libgl1-mesa-dri)"
+_users: set[int] = set()  # processes that have used OpenGL: this one, or those that it was forked from
+
+
+def _forked() -> Error:
+    return Error("a process that was forked cannot use OpenGL after its parent did: use the start method spawn "
+                 '(multiprocessing.get_context("spawn"))')
 
 
 def _library() -> ctypes.CDLL:
@@ -38,13 +45,29 @@ def _library() -> ctypes.CDLL:
     return egl
 
 
+def _after_fork() -> None:
+    """In the new process. At its exit a driver would wait for threads that only its parent has, and would crash: the functions that drivers
+    have registered for the exit of a process are not called. Those of Python are, and files are flushed."""
+    process = ctypes.CDLL(None)
+    if _users and hasattr(process, "on_exit"):
+        process.on_exit(process._exit, None)  # called in reverse order: before those of the drivers, with the exit status
+        process["__cxa_atexit"](process.fflush, None, None)
+
+
+os.register_at_fork(after_in_child=_after_fork)
+
+
 class OffScreen:
     """An OpenGL 4.5 core context without a surface; a GPU wins over a software renderer. Within `with` it is current on the calling thread,
-    where any other context is current again afterwards. Error: there is none."""
+    where any other context is current again afterwards. Error: there is none, or the process was forked from one that has used OpenGL."""
 
     simulates = False  # whether all functions of the library need it: with backend gl
 
     def __init__(self) -> None:
+        self._process = os.getpid()
+        if _users - {self._process}:
+            raise _forked()
+        _users.add(self._process)
         self._egl, self._context, self._before = _library(), None, threading.local()
         self._functions: dict[str, Any] = {}
         for display in self._displays():
@@ -94,7 +117,13 @@ class OffScreen:
             self._functions[name] = ctypes.CFUNCTYPE(result, *(types[kind] for kind in kinds))(address)
         return self._functions[name](*arguments)
 
+    def inherited(self) -> bool:
+        """Whether another process made it, from which this one was forked."""
+        return self._process != os.getpid()
+
     def __enter__(self) -> OffScreen:
+        if self.inherited():  # a driver's threads and locks do not survive a fork: a call could wait for ever
+            raise _forked()
         egl, here = self._egl, self._before
         api = egl.eglQueryAPI()
         egl.eglBindAPI(_OPENGL_API)  # of this thread
@@ -112,5 +141,5 @@ class OffScreen:
         self._egl.eglBindAPI(api)
 
     def __del__(self) -> None:
-        if self.__dict__.get("_context"):
+        if self.__dict__.get("_context") and not self.inherited():
             self._egl.eglDestroyContext(self._display, self._context)

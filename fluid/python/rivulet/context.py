@@ -35,19 +35,20 @@ class Context(Handle):
     off_screen: with an OpenGL context of its own, without a window, for World.picture and all that draws; it is current during calls only.
     find: instead the caller's own OpenGL context, which must be current in calls that need it: a function that returns the address of one of
     OpenGL's functions, find(name); plain_state: OpenGL's state is not restored, as in rivulet.h.
-    sky_horizon, sky_zenith (3,): what the water reflects, radiance; sky_sun: (3,), towards the sun; all 0: a grey-blue sky; clouds: 0 to 1.
+    sky_horizon, sky_zenith (3,): what the water reflects, radiance, by default a bright sky; sky_sun: (3,), towards the sun; all 0: a darker,
+    grey-blue sky; clouds: 0 to 1.
     BadInput: no such backend. Error: it is not there, or there is no OpenGL 4.5."""
 
     def __init__(self, backend: str = "auto", device: str | None = None, log: Callable[[int, str], None] | None = None, memory_limit: int = 0,
                  threads: int = 0, off_screen: bool = False, find: Callable[[str], int | None] | None = None, plain_state: bool = False,
-                 sky_horizon: ArrayLike = (0, 0, 0), sky_zenith: ArrayLike = (0, 0, 0), sky_sun: ArrayLike = (0, 0, 0),
+                 sky_horizon: ArrayLike = (2.2, 2.4, 2.6), sky_zenith: ArrayLike = (0.8, 1.1, 1.6), sky_sun: ArrayLike = (0, 0, 0),
                  clouds: float = 0.0) -> None:
         said = c.LOG(0) if log is None else _log_of(log)
         gl = OffScreen() if off_screen else None
         finder = gl.find if gl is not None else None if find is None else _find_of(find)
         options = struct(c.ContextOptions, find=None if finder is None else ctypes.cast(finder, c_void_p), backend=text_of(backend),
-                         device=text_of(device), log=said, memory_limit=whole(memory_limit, 0, 2**63, "memory_limit"),
-                         threads=whole(threads, 0, 2**31, "threads"), plain_state=int(plain_state), clouds=clouds,
+                         device=text_of(device), log=said, memory_limit=whole(memory_limit, 0, 2**63 - 1, "memory_limit"),
+                         threads=whole(threads, 0, 2**31 - 1, "threads"), plain_state=int(plain_state), clouds=clouds,
                          sky_horizon=vector(sky_horizon, 3, "sky_horizon"), sky_zenith=vector(sky_zenith, 3, "sky_zenith"),
                          sky_sun=vector(sky_sun, 3, "sky_sun"))
         pointer = c_void_p()
@@ -106,7 +107,7 @@ class Context(Handle):
         velocities (n, 3), m/s, None: at rest.
         body_host moves the bodies: advance(loads, gravity, seconds, states) changes `states`, an array with the fields position (m), rotation
         (x y z w), velocity (m/s) and spin (rad/s), by loads["force"] (N) and loads["torque"] (N m); reset(states) gets the states
-        of t = 0; added(id, state) and removed(id), if it has them, hear of bodies that come and go. Its arrays are copies, and what it raises
+        of t = 0; added(id, state) and removed(id), if it has them, are called when bodies come and go. Its arrays are copies, and what it raises
         comes out of the call. None: bodies collide with nothing but fluid.
         skins_bring: m^3 of water that drops of skins bring in 10 s, see World.step_skins; 0: none.
         BadInput: an unknown key, or a value out of its range."""

@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _structs as c
 from ._handle import Handle
-from ._library import BadInput, Error, address_of, array_of, struct, vector, whole
+from ._library import BadInput, Error, address_of, array_of, number_of, struct, vector, whole
 from ._off_screen import OffScreen
 
 Array = NDArray[Any]
 _FOGS = {"exponential": 1, "exponential squared": 2, "linear": 3}
+_BACKGROUND = (0.24, 0.26, 0.29), (0.07, 0.08, 0.10)  # sRGB, at the top and at the bottom: dark, so that reflections show the water's shape
 _COLOURS = {"automatic": 0, "linear": 1, "sRGB": 2}
 
 
@@ -37,15 +38,16 @@ class Camera:
         right = np.cross(up, back)
         if not np.linalg.norm(back) > 0 or not np.linalg.norm(right) > 1e-9 * np.linalg.norm(up) * np.linalg.norm(back):
             raise BadInput(f"the camera at {eye} looks at {at} with {up} upwards: choose others")
-        if not 0 < self.fov < 180 or not 0 < self.near < self.far:
+        fov, near, far = (number_of(value, name) for value, name in ((self.fov, "fov"), (self.near, "near"), (self.far, "far")))
+        if not 0 < fov < 180 or not 0 < near < far:
             raise BadInput(f"fov is {self.fov}, near {self.near}, far {self.far}: give 0 < fov < 180 and 0 < near < far")
         axes = np.array([right / np.linalg.norm(right), np.cross(back, right) / np.linalg.norm(np.cross(back, right)), back / np.linalg.norm(back)])
         view = np.eye(4)
         view[:3, :3], view[:3, 3] = axes, -axes @ eye
-        depth, slope = self.far - self.near, 1 / np.tan(np.radians(self.fov) / 2)
+        depth, slope = far - near, 1 / np.tan(np.radians(fov) / 2)
         projection = np.zeros((4, 4))
         projection[0, 0], projection[1, 1], projection[3, 2] = slope / aspect, slope, -1
-        projection[2, 2:] = -(self.far + self.near) / depth, -2 * self.far * self.near / depth
+        projection[2, 2:] = -(far + near) / depth, -2 * far * near / depth
         return View(view, projection, self.near, self.far)
 
     def distances(self, depths: ArrayLike) -> Array:
@@ -119,6 +121,12 @@ class Target:
     colours: str = "automatic"
 
 
+def _default_background(size: tuple[int, int], linear: bool) -> Array:
+    share = np.linspace(0, 1, size[0])[:, None, None]
+    colours = (1 - share) * np.array(_BACKGROUND[0]) + share * np.array(_BACKGROUND[1])
+    return np.broadcast_to(((colours + 0.055) / 1.055) ** 2.4 if linear else colours, (*size, 3))
+
+
 class Picture:
     """Colour and depth off screen, into which worlds are drawn one after the other; made by Context.picture. Closed at the end of its `with`,
     by close(), or with the last reference."""
@@ -126,8 +134,8 @@ class Picture:
     def __init__(self, gl: OffScreen, width: int, height: int, linear: bool) -> None:
         self.width, self.height, self.linear, self._gl = whole(width, 1, 16384, "width"), whole(height, 1, 16384, "height"), linear, gl
         with gl:
-            self._colour = _texture(gl, 0x8814 if linear else 0x8058, width, height)  # GL_RGBA32F, GL_RGBA8
-            self._depth = _texture(gl, 0x8CAC, width, height)  # GL_DEPTH_COMPONENT32F
+            self._colour = _texture(gl, 0x8814 if linear else 0x8058, self.width, self.height)  # GL_RGBA32F, GL_RGBA8
+            self._depth = _texture(gl, 0x8CAC, self.width, self.height)  # GL_DEPTH_COMPONENT32F
             name = ctypes.c_uint()
             gl.call("glCreateFramebuffers", "ip", 1, ctypes.addressof(name))
             self._framebuffer = name.value
@@ -138,20 +146,30 @@ class Picture:
             self.close()
             raise Error(f"this machine's OpenGL has no room for a picture of {width} x {height}")
 
-    def fill(self, background: ArrayLike = (0.8, 0.85, 0.9), depth: ArrayLike = 1.0) -> None:
+    def fill(self, background: ArrayLike | None = None, depth: ArrayLike = 1.0) -> None:
         """Replaces the whole picture. background: one colour of 3 or 4 values, or an image (h, w, 3 or 4), row 0 at the top: sRGB, 0 to 1 or
-        uint8 of 0 to 255; of a linear picture linear radiance. depth: 0 near .. 1 far, one or (h, w); see Camera.depths. Copied."""
+        uint8 of 0 to 255; of a linear picture linear radiance; None: dark grey, darker downwards. depth: 0 near .. 1 far, one or (h, w); see
+        Camera.depths. Copied. BadInput: other values or shapes."""
         size, kind = (self.height, self.width), np.float32 if self.linear else np.uint8
-        given = np.asarray(background)
-        if given.dtype != np.uint8:
-            given = given.astype(np.float32) if self.linear else np.rint(np.clip(given, 0, 1) * 255).astype(np.uint8)
-        elif self.linear:
+        given = np.asarray(_default_background(size, self.linear) if background is None else background)
+        if given.dtype == np.uint8 and self.linear:
             raise BadInput("the background is of bytes, and the picture is linear: give floats")
+        if given.dtype != np.uint8:
+            given = array_of(given, (-1,) * given.ndim, "the background")
+            if not np.isfinite(given).all():
+                raise BadInput("the background has a value that is not finite: replace it, for example with numpy.nan_to_num")
+            if not self.linear:
+                if given.min(initial=0) < 0 or given.max(initial=0) > 1:
+                    raise BadInput(f"the background has values from {given.min():g} to {given.max():g}: give 0 to 1, or bytes, "
+                                   "background.astype(numpy.uint8)")
+                given = np.rint(given * 255).astype(np.uint8)
         if given.shape not in ((3,), (4,), (*size, 3), (*size, 4)):
             raise BadInput(f"the background has the shape {given.shape}: give a colour, (3,) or (4,), or an image, {size} + (3,) or (4,)")
         image = np.full((*size, 4), 1 if self.linear else 255, kind)
         image[..., :given.shape[-1]] = given
-        depths = np.asarray(depth, np.float32)
+        depths = array_of(depth, (-1,) * np.ndim(depth), "the depth")
+        if not ((depths >= 0) & (depths <= 1)).all():
+            raise BadInput("the depth has values outside 0 to 1: use Camera.depths")
         if depths.shape not in ((), size):
             raise BadInput(f"the depth has the shape {depths.shape}: give one number or {size}")
         with self._current() as gl:
@@ -178,7 +196,7 @@ class Picture:
         names = (ctypes.c_uint * 2)(self.__dict__.get("_colour", 0), self.__dict__.get("_depth", 0))
         framebuffer = ctypes.c_uint(self.__dict__.get("_framebuffer", 0))
         self._colour = self._depth = self._framebuffer = 0
-        if any(names):
+        if any(names) and not self._gl.inherited():
             with self._gl as gl:
                 gl.call("glDeleteFramebuffers", "ip", 1, ctypes.addressof(framebuffer))
                 gl.call("glDeleteTextures", "ip", 2, ctypes.addressof(names))
@@ -228,6 +246,8 @@ class Drawn(Handle):
         """Draws the water over what `picture` holds: nearer objects hide it, farther ones are seen through it. Colour and depth change only
         where there is water. light: the first light, None: white from (0.4, 0.8, 0.45); lights: up to 7 others; shadow: of the first light;
         units_per_metre: of the world that a View's matrix transforms. BadInput: the context has no OpenGL."""
+        if not isinstance(camera, (Camera, View)) or not isinstance(picture, (Picture, Target)):
+            raise BadInput(f"a world is drawn with a Camera or View into a Picture or Target, not with {camera!r} into {picture!r}")
         size = picture.width, picture.height
         view = camera.view(size[0] / size[1]) if isinstance(camera, Camera) else camera
         if isinstance(picture, Picture):
@@ -270,7 +290,7 @@ class Drawn(Handle):
             finally:
                 gl.call("glDeleteTextures", "ip", 1, ctypes.addressof(name))
 
-    def picture(self, camera: Camera | View, width: int = 480, height: int = 360, background: ArrayLike = (0.8, 0.85, 0.9),
+    def picture(self, camera: Camera | View, width: int = 480, height: int = 360, background: ArrayLike | None = None,
                 depth: ArrayLike = 1.0, linear: bool = False, **light: Any) -> Array:
         """Its picture, (height, width, 4), row 0 at the top, uint8, sRGB; linear: float32, linear radiance. background and depth as of
         Picture.fill; light: as of draw. BadInput: the context is not of off_screen."""

@@ -13,11 +13,13 @@ raises BadInput, a run that cannot be compared raises Error.
 from __future__ import annotations
 
 import concurrent.futures
+import contextlib
 import copy
 import csv
 import hashlib
 import importlib.util
 import inspect
+import io
 import json
 import math
 import multiprocessing
@@ -29,7 +31,9 @@ from typing import Any, Callable, Mapping, NamedTuple, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import BadInput, Error, array_of, version
+from . import _fit_input as given
+from ._fit_input import OF_A_WORLD
+from ._library import BadInput, Error, array_of, text_of, version
 from .context import Context
 from .world import World
 
@@ -40,10 +44,10 @@ Path = Union[str, "os.PathLike[str]"]
 Series = Callable[[World, float], float]  # of a world and the particle spacing (m), in SI units
 Start = Callable[[Context, "dict[str, Any]"], World]  # of a context and the scene with the values that are tried
 Curve = Sequence[Sequence[float]]  # a run's times (s) and its values
-OF_A_WORLD = ("fluid", "emitters", "sinks", "dry")  # the parts of a scene that act on water; colliders and the like need a function `start`
 NOT_OF_A_WORLD = ("colliders", "bodies", "flow")
 METHODS = ("brent", "nelder-mead", "differential evolution")
 SCAN = 7  # values over the range of a single parameter, before Brent's method searches between the best of them
+BESIDE = (-0.08, -0.04, 0.04, 0.08)  # places beside the best, as shares of the range, at which the curvature is measured after Brent's method
 
 
 class Point(NamedTuple):
@@ -87,12 +91,16 @@ def _function(name: str, what: str) -> Callable[..., Any]:
     """A function by `FILE.py:NAME`."""
     file, _, function = name.rpartition(":")
     if not file or not pathlib.Path(file).is_file():
-        raise BadInput(f"{what} {name!r} is neither {', '.join(SERIES)} nor FILE.py:FUNCTION of a file that exists")
+        named = f"neither {', '.join(SERIES)} nor" if what == "series" else "not"
+        raise BadInput(f"{what} {name!r} is {named} FILE.py:FUNCTION of a file that exists")
     spec = importlib.util.spec_from_file_location("rivulet_fit_" + pathlib.Path(file).stem, file)
     if spec is None or spec.loader is None:
         raise BadInput(f"{what} {name!r}: {file} is no Python file; name it with .py")
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise BadInput(f"{what} {name!r}: {file} cannot be imported: {type(error).__name__}: {error}") from error
     found: Callable[..., Any] | None = getattr(module, function, None)
     if not callable(found):
         raise BadInput(f"{file} has no function {function}")
@@ -152,9 +160,14 @@ def _run(job: dict[str, Any]) -> Curve:
 
 def _write(path: Path, text: str) -> None:
     part = f"{path}.part{os.getpid()}"
-    with open(part, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.replace(part, path)
+    try:
+        with open(part, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+        os.replace(part, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            os.remove(part)
+        raise Error(f"{path} cannot be written: {error.strerror}") from error
 
 
 # --- the search --------------------------------------------------------------------------------------------------------------------------------
@@ -163,9 +176,8 @@ class _Range:
     """The range of a parameter, as 0 to 1."""
 
     def __init__(self, name: str, low: float, high: float, scale: str = "linear") -> None:
-        self.name, self.low, self.high, self.log = name, float(low), float(high), scale == "log"
-        if scale not in ("linear", "log"):
-            raise BadInput(f"{name}: scale {scale!r} is neither linear nor log")
+        self.name, self.log = name, given.one_of(scale, ("linear", "log"), f"{name}: scale") == "log"
+        self.low, self.high = (given.number(value, f"{name}: the range's {end}") for value, end in ((low, "lower end"), (high, "upper end")))
         if not self.low < self.high or not math.isfinite(self.high - self.low):
             raise BadInput(f"{name}: a range goes from a smaller to a larger number, not from {low} to {high}")
         if self.log and self.low <= 0:
@@ -180,15 +192,39 @@ class _Range:
         return math.log(value / self.low) / math.log(self.high / self.low) if self.log else (value - self.low) / (self.high - self.low)
 
 
+class _Enough(Exception):
+    """A method has used the runs that it may make."""
+
+
+def _kept(path: pathlib.Path) -> Curve | None:
+    """A run that was kept. None: there is none, or its file is damaged."""
+    try:
+        curve: Curve = json.loads(path.read_text(encoding="utf-8"))
+        times, values = np.array(curve, dtype=float)
+    except (OSError, ValueError, TypeError):
+        return None
+    return curve if len(times) == len(values) > 0 else None
+
+
+def _cores() -> int:
+    """Those that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
 class _Search:
     """Runs at places (one number from 0 to 1 for each parameter), kept in files, and their differences from the measured curve."""
 
-    def __init__(self, job: dict[str, Any], ranges: list[_Range], measured: Array, shift: tuple[float, float], folder: Path, jobs: int) -> None:
+    def __init__(self, job: dict[str, Any], ranges: list[_Range], measured: Array, shift: tuple[float, float], folder: Path, jobs: int,
+                 most: int) -> None:
         self.job, self.ranges, self.measured, self.shift, self.folder, self.jobs = job, ranges, measured, shift, pathlib.Path(folder), jobs
+        self.most = most  # of different points
         self.points: list[Point] = []
         self.curves: dict[tuple[float, ...], Curve] = {}
         self.pool: concurrent.futures.ProcessPoolExecutor | None = None
-        (self.folder / "runs").mkdir(parents=True, exist_ok=True)
+        try:
+            (self.folder / "runs").mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise BadInput(f"folder: {self.folder / 'runs'} cannot be made: {error.strerror}; name another folder") from error
 
     def path(self, values: Mapping[str, float]) -> pathlib.Path:
         """Of the kept run with these values."""
@@ -218,12 +254,15 @@ class _Search:
         return min(costs), float(fine[np.argmin(costs)])
 
     def many(self, places: Sequence[ArrayLike] | Array) -> list[float]:
-        """Residuals at several places, each run in a process of its own."""
+        """Residuals at several places, each run in a process of its own. _Enough: there would be more points than `most`."""
         wanted = [{r.name: r.value(u) for r, u in zip(self.ranges, np.atleast_1d(place))} for place in places]
+        known = {tuple(p.values.values()) for p in self.points}
+        if len(known | {tuple(values.values()) for values in wanted}) > self.most:
+            raise _Enough
         paths = [self.path(values) for values in wanted]
-        kept = [path.exists() for path in paths]
-        missing = {path: values for path, values in zip(paths, wanted) if not path.exists()}
-        threads = max(1, (os.cpu_count() or 1) // max(1, min(self.jobs, len(missing))))
+        kept = [_kept(path) is not None for path in paths]
+        missing = {path: values for path, values, there in zip(paths, wanted, kept) if not there}
+        threads = max(1, _cores() // max(1, min(self.jobs, len(missing))))
         work = {path: {**self.job, "threads": threads, "settings": {**self.job["settings"], **values}} for path, values in missing.items()}
         if len(work) > 1 and self.jobs > 1:
             if self.pool is None:
@@ -236,7 +275,9 @@ class _Search:
                 _write(path, json.dumps(_run(one)))
         results = []
         for values, path, cached in zip(wanted, paths, kept):
-            curve = json.loads(path.read_text(encoding="utf-8"))
+            curve = _kept(path)
+            if curve is None:
+                raise Error(f"{path} cannot be read, though it has just been written: is the disk full?")
             residual, shift = self.residual(curve)
             if not any(p.values == values for p in self.points):
                 self.points.append(Point(values, residual, shift, cached))
@@ -252,31 +293,50 @@ class _Search:
             self.pool.shutdown(cancel_futures=True)
 
 
-def _search(search: _Search, method: str, evaluations: int, tolerance: float, seed: int) -> None:
+def _least(method: str, count: int) -> int:
+    """Runs without which a method cannot begin and end, for that number of parameters."""
+    if method == "brent":
+        return SCAN + 2 + len(BESIDE)
+    return _starts(count) + count + 2 if method == "nelder-mead" else 2 * _generation(count)
+
+
+def _starts(count: int) -> int:
+    return max(4 * count, 8)
+
+
+def _generation(count: int) -> int:
+    return 5 * count
+
+
+def _search(search: _Search, method: str, tolerance: float, seed: int) -> None:
+    """At most search.most runs."""
     from scipy import optimize
     from scipy.stats import qmc
-    count = len(search.ranges)
+    count, evaluations = len(search.ranges), search.most
     if method == "brent":
         scan = np.linspace(0, 1, SCAN)
         costs = search.many([[u] for u in scan])
         k = int(np.argmin(costs))
         between = (scan[max(k - 1, 0)], scan[min(k + 1, SCAN - 1)])
-        optimize.minimize_scalar(lambda u: search.one([u]), bounds=between, method="bounded",
-                                 options={"xatol": tolerance, "maxiter": max(1, evaluations - SCAN)})
+        search.most -= len(BESIDE)
+        with contextlib.suppress(_Enough):
+            optimize.minimize_scalar(lambda u: search.one([u]), bounds=between, method="bounded",
+                                     options={"xatol": tolerance, "maxiter": evaluations})
+        search.most = evaluations
         best = search.ranges[0].place(min(search.points, key=lambda p: p.residual).values[search.ranges[0].name])
         # Points beside the best: the curvature is measured, not found by chance.
-        search.many([[min(max(best + d, 0), 1)] for d in (-0.08, -0.04, 0.04, 0.08)])
+        search.many([[min(max(best + d, 0), 1)] for d in BESIDE])
     elif method == "nelder-mead":
-        starts = qmc.LatinHypercube(count, seed=seed).random(min(max(4 * count, 8), evaluations))
+        starts = qmc.LatinHypercube(count, seed=seed).random(_starts(count))
         costs = search.many(starts)
         start: Array = starts[np.argmin(costs)]
         sides = np.diag(np.where(start < 0.5, 0.15, -0.15))
         simplex = np.vstack([start, np.clip(start + sides, 0, 1)])
-        optimize.minimize(search.one, start, method="Nelder-Mead", bounds=[(0, 1)] * count,
-                          options={"initial_simplex": simplex, "xatol": tolerance, "fatol": 0, "maxfev": max(1, evaluations - len(starts))})
+        with contextlib.suppress(_Enough):
+            optimize.minimize(search.one, start, method="Nelder-Mead", bounds=[(0, 1)] * count,
+                              options={"initial_simplex": simplex, "xatol": tolerance, "fatol": 0, "maxfev": 10 * evaluations})
     else:
-        generation = 5 * count
-        optimize.differential_evolution(search.one, [(0, 1)] * count, popsize=5, maxiter=max(1, evaluations // generation - 1), tol=tolerance,
+        optimize.differential_evolution(search.one, [(0, 1)] * count, popsize=5, maxiter=evaluations // _generation(count) - 1, tol=tolerance,
                                         seed=seed, polish=False, updating="deferred", workers=lambda work, places: search.many(list(places)))
 
 
@@ -377,8 +437,10 @@ class Fit:
         for k, p in enumerate(self.points):
             lines.append(f"{k + 1:>4}  " + "  ".join(f"{v:>18.6g}" for v in p.values.values()) + f"  {p.residual:>12.4g}  {p.shift:>9.4g}")
         for name, value in self.best.items():
-            error = "" if self.error[name] is None else f" +- {self.error[name]:.2g}"
-            lines.append(f"{name} = {value:.4g}{error}")
+            error, (low, high) = self.error[name], self.interval[name]
+            log = any(r.name == name and r.log for r in self._ranges)  # whose errors are not alike on both sides
+            about = "" if error is None else f", from {low:.3g} to {high:.3g}" if log else f" +- {error:.2g}"
+            lines.append(f"{name} = {value:.4g}{about}")
         late = "later" if self.shift > 0 else "earlier"
         shift = f"; the run is {abs(self.shift):.3g} s {late} than the measurement" if self.shift else ""
         lines.append(f"rms difference {self.residual:.3g}, {100 * self.relative:.2g} % of the curve's range{shift}")
@@ -386,14 +448,15 @@ class Fit:
 
     def save(self, folder: Path) -> None:
         """Writes result.json (best, error, interval, residual, relative, shift, notes) and points.csv (one row for each point) into a folder
-        that exists."""
+        that exists. Error: they cannot be written."""
         folder = pathlib.Path(folder)
         _write(folder / "result.json", json.dumps({"best": self.best, "error": self.error, "interval": self.interval, "residual": self.residual,
                                                    "relative": self.relative, "shift": self.shift, "notes": self.notes}, indent=2) + "\n")
-        with open(folder / "points.csv", "w", newline="", encoding="utf-8") as file:
-            rows = csv.writer(file)
-            rows.writerow([*self.best, "residual", "shift"])
-            rows.writerows([*p.values.values(), p.residual, p.shift] for p in self.points)
+        text = io.StringIO()
+        rows = csv.writer(text)
+        rows.writerow([*self.best, "residual", "shift"])
+        rows.writerows([*p.values.values(), p.residual, p.shift] for p in self.points)
+        _write(folder / "points.csv", text.getvalue())
 
     def plot(self, path: Path, label: str = "", unit: str = "") -> None:
         """Writes a picture (PNG, or what the ending of `path` says): the measured curve with the best run, and the residual over each parameter,
@@ -434,56 +497,67 @@ def fit(scene: Mapping[str, Any] | Path, parameters: Mapping[str, Sequence[Any]]
     seconds     simulated time of a run, s; None: to the last measured time
     shift       (low, high), s: the clock of the measurement may be behind that of the run by as much, which is fitted, too
     method      brent (one parameter), nelder-mead (several) or differential evolution; None: by the number of parameters
-    evaluations about the largest number of runs; tolerance: of the values, as a share of the range
+    evaluations the largest number of runs, kept ones included; tolerance: of the values, as a share of the range
     folder      where runs are kept; it is made
     jobs        processes at the same time, where the method allows; None: as many as cores
     backend     of the runs' contexts; series other than front and height need cpu; frame: s between two values of the curve; seed: of the random starts
 
     BadInput: a wrong argument. Error: a run failed, or its series is not finite."""
-    if isinstance(scene, (str, os.PathLike)):
-        try:
-            whole = json.loads(pathlib.Path(scene).read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            raise BadInput(f"the scene {scene} cannot be read: {error}") from error
-    else:
-        whole = scene
+    whole = given.scene_of(os.fspath(scene) if isinstance(scene, os.PathLike) else scene)
     for part in NOT_OF_A_WORLD:
         if whole.get(part) and start is None:
             raise BadInput(f"the scene has {part}, which a fit cannot make by itself: give start, a function that makes the world")
-    ranges = [_Range(name, *values) for name, values in parameters.items()]
+    ranges = []
+    for name, values in given.mapping(parameters, "parameters", '{"fluid.viscosity": (1e-6, 1e-2, "log")}').items():
+        if not isinstance(values, (list, tuple)) or len(values) not in (2, 3):
+            raise BadInput(f"{name}: the range is {values!r}: give (low, high) or (low, high, scale)")
+        ranges.append(_Range(name, *values))
     if not ranges:
         raise BadInput("no parameter is to be found: name one with its range")
-    curve = np.array(measured, dtype=float)
+    settings = given.mapping({} if settings is None else settings, "settings", '{"fluid.viscosity": 0.01}')
+    for what, paths in (("parameters", parameters), ("settings", settings)):
+        for name in paths if start is None else ():  # a function makes of the scene what it likes
+            given.check_path(name, what)
+    shift = given.shift_of(shift)
+    try:
+        curve = np.array(measured, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise BadInput(f"the measured curve is not of numbers: give rows of two, time and value ({error})") from error
     if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < len(ranges) + 2 or not np.isfinite(curve).all():
         raise BadInput(f"the measured curve has the shape {curve.shape}: give finite times and values, at least {len(ranges) + 2} rows of two")
     if (np.diff(curve[:, 0]) <= 0).any() or curve[0, 0] + shift[0] < 0:
         raise BadInput("the measured times must increase, and be at least 0 s with the shift added")
-    method = method or ("brent" if len(ranges) == 1 else "nelder-mead")
-    if method not in METHODS:
-        raise BadInput(f"method {method!r} is none of {', '.join(METHODS)}")
+    method = given.one_of(("brent" if len(ranges) == 1 else "nelder-mead") if method is None else method, METHODS, "method")
     if method == "brent" and len(ranges) > 1:
         raise BadInput(f"brent finds one parameter, not {len(ranges)}: use nelder-mead or differential evolution")
+    least = _least(method, len(ranges))
+    evaluations = given.whole_number(evaluations, "evaluations", least, f", which {method} needs for {len(ranges)} "
+                                     f"parameter{'s' if len(ranges) > 1 else ''}")
+    tolerance = given.number(tolerance, "tolerance", 1e-9, 0.5, "a share of the range, from 1e-9 to 0.5")
+    frame = given.number(frame, "frame", 1e-9, 3600, "seconds above 0 (at most 3600)")
+    seed = given.whole_number(seed, "seed", 0)
+    jobs = _cores() if jobs is None else given.whole_number(jobs, "jobs", 1)
+    given.one_of(backend, given.BACKENDS, "backend")
+    if start is not None and not callable(start):
+        _function(given.text(start, "start", "FILE.py:FUNCTION"), "start")
     if callable(series):
         series = _named(series)
-    elif series in LATE and backend != "cpu":
+    elif given.text(series, "series", f"FILE.py:FUNCTION, {', '.join(SERIES)}") in LATE and backend != "cpu":
         raise BadInput(f"series {series} is some frames old on a GPU: set backend to cpu, or give a function that reads world.particles()")
     elif series not in SERIES:
         _function(series, "series")
-    seconds = float(curve[-1, 0] + shift[1]) if seconds is None else float(seconds)
+    seconds = float(curve[-1, 0] + shift[1]) if seconds is None else given.number(seconds, "seconds")
     if seconds < curve[-1, 0] + shift[1]:
         raise BadInput(f"a run of {seconds:g} s ends before the measured curve with its shift, {curve[-1, 0] + shift[1]:g} s: raise seconds")
-    job = {"scene": {part: whole[part] for part in OF_A_WORLD if part in whole}, "settings": dict(settings or {}), "series": series,
+    plain = json.loads(text_of([{part: whole[part] for part in OF_A_WORLD if part in whole}, dict(settings)]) or b"")
+    job = {"scene": plain[0], "settings": plain[1], "series": series,
            "start": _named(start) if callable(start) else start, "backend": backend, "seconds": seconds, "frame": frame, "threads": 0}
-    search = _Search(job, ranges, curve, (float(shift[0]), float(shift[1])), folder, jobs or os.cpu_count() or 1)
+    search = _Search(job, ranges, curve, shift, folder, jobs, evaluations)
     try:
-        _search(search, method, evaluations, tolerance, seed)
+        _search(search, method, tolerance, seed)
         return Fit(search)
     finally:
         search.close()
-
-
-KEYS = {"scene", "parameters", "measured", "series", "start", "settings", "seconds", "shift", "method", "evaluations", "tolerance", "folder", "jobs",
-        "backend", "frame", "seed", "label", "unit"}
 
 
 def fit_file(path: Path) -> Fit:
@@ -491,53 +565,17 @@ def fit_file(path: Path) -> Fit:
     folder of the fit. BadInput, Error: as fit."""
     path = pathlib.Path(path)
     try:
-        asked = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path} cannot be read: {error}") from error
-    for key in asked:
-        if key not in KEYS:
-            raise BadInput(f"{path}: {key} is no key of a fit; the keys are {', '.join(sorted(KEYS))}")
-    for key in ("scene", "parameters", "measured", "series"):
-        if key not in asked:
-            raise BadInput(f"{path} lacks {key}")
-    here = path.resolve().parent
-    if isinstance(asked["scene"], str):
-        asked["scene"] = here / asked["scene"]
-    for key in ("series", "start"):
-        if ":" in (asked.get(key) or ""):
-            asked[key] = str(here / asked[key])
-    curve = asked.pop("measured")
-    if isinstance(curve, dict):
-        try:
-            with open(here / curve["file"], encoding="utf-8") as file:
-                rows = [line.split(",") for line in file if line.strip() and not line.startswith("#")]
-            columns = curve.get("columns", [0, 1])
-            numbers = rows[0 if _number(rows[0][0]) else 1:]
-            curve = [[float(row[columns[0]]) * curve.get("time", 1), float(row[columns[1]]) * curve.get("value", 1)] for row in numbers]
-        except (OSError, KeyError, ValueError, IndexError) as error:
-            raise BadInput(f"{path}: the measured curve cannot be read: {error!r}; it needs file, columns [time, value], and factors time and value "
-                           "to s and SI units") from error
-    try:
-        parameters = {name: (r["from"], r["to"], r.get("scale", "linear")) for name, r in asked.pop("parameters").items()}
-    except (TypeError, KeyError, AttributeError) as error:
-        raise BadInput(f'{path}: parameters are {{"fluid.viscosity": {{"from": 1e-6, "to": 1e-2, "scale": "log"}}}}') from error
-    label, unit = asked.pop("label", asked["series"] if isinstance(asked["series"], str) else ""), asked.pop("unit", "")
-    asked["folder"] = here / asked.get("folder", path.stem)
-    found = fit(asked.pop("scene"), parameters, curve, asked.pop("series"), **asked)
+        asked = given.read(path)
+        label, unit = asked.pop("label"), asked.pop("unit")
+        found = fit(**asked)
+    except BadInput as error:
+        raise BadInput(f"{path}: {error}") from error
     found.save(asked["folder"])
     try:
         found.plot(asked["folder"] / "fit.png", label, unit)
     except ImportError:
         print("there is no plot, because Matplotlib is not installed: python3-matplotlib", file=sys.stderr)
     return found
-
-
-def _number(text: str) -> bool:
-    try:
-        float(text)
-        return True
-    except ValueError:
-        return False
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -547,7 +585,7 @@ def main(arguments: Sequence[str]) -> int:
         return 0 if arguments in (["-h"], ["--help"]) else 2
     try:
         print(fit_file(arguments[0]))
-    except (ImportError, RuntimeError) as error:
+    except (ImportError, OSError, RuntimeError) as error:  # OSError: of the plot
         print(f"rivulet.fit: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _structs as c
-from ._library import BadInput, address_of, array_of, array_or_none, struct, vector, whole
+from ._library import BadInput, address_of, array_of, array_or_none, of_kind, struct, vector, whole
 
 Array = NDArray[Any]
 _NONE = (0, 0, 0)
@@ -140,6 +140,8 @@ class Body(_Given):
                  position: ArrayLike = _NONE, rotation: ArrayLike = (0, 0, 0, 1), mesh: Mesh | None = None, density: float = 0.0,
                  velocity: ArrayLike = _NONE, spin: ArrayLike = _NONE, layers: int = 0, meets: int = 0) -> None:
         self._keep(locals())
+        if mesh is not None:
+            of_kind(mesh, Mesh, "mesh")
         self.samples, self.mesh = array_or_none(samples, (-1, 3), "samples"), mesh
         self._c = struct(c.Body, samples=address_of(self.samples), samples_count=0 if self.samples is None else len(self.samples), mass=mass,
                          volume=volume, inertia=vector(inertia, 3, "inertia"), pose=pose_of(position, rotation),
@@ -171,6 +173,8 @@ def pose_of(position: ArrayLike, rotation: ArrayLike) -> c.Pose:
 def rows_of(volumes: Sequence[Volume]) -> Array:
     rows = np.zeros(len(volumes), c.VOLUME)
     for row, volume in zip(rows, volumes):
+        if not isinstance(volume, (Box, Sphere)):
+            raise BadInput(f"a volume is {volume!r}: give Box or Sphere")
         row["id"], row["position"] = whole(volume.id, 0, 2**32 - 1, "a volume's id"), volume.position
         if isinstance(volume, Box):
             row["size"] = volume.size

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _structs as c
-from ._library import BadInput, address_of, array_of, array_or_none, view_of
+from ._library import BadInput, address_of, array_of, array_or_none, each_of, path_of, seconds_of, view_of
 from .draw import Drawn
 from .parts import Float, Volume, rows_of
 
@@ -54,9 +54,10 @@ class Queries(Drawn):
         """Loads on objects that the caller moves, to be applied for `seconds`: lift by Archimedes, drag by Morison et al. 1950. (n,) with the
         fields force (N) and torque (N m, about the centre of mass). gravity: (3,) m/s^2, None: fluid.gravity. Waits for the device."""
         gravity = array_or_none(gravity, (3,), "gravity")
+        floats = each_of(floats, Float, "floats")
         loads = np.zeros(len(floats), c.LOAD)
         given = (c.Float * len(floats))(*(each._c for each in floats))
-        self._call("world_buoyancy", given, len(floats), address_of(gravity), seconds, address_of(loads))
+        self._call("world_buoyancy", given, len(floats), address_of(gravity), seconds_of(seconds), address_of(loads))
         return loads
 
     def cast(self, origins: ArrayLike, directions: ArrayLike, reach: ArrayLike = 0.0) -> Array:
@@ -131,8 +132,8 @@ class Queries(Drawn):
 
     def export(self, path: Path) -> None:
         """Writes the particles as .ply, .vtp (ParaView) or .csv. BadInput: another ending. Error: the file cannot be written."""
-        self._call("world_export", os.fsencode(path))
+        self._call("world_export", path_of(path))
 
     def export_surface(self, path: Path) -> None:
         """Writes the water's surface as .obj or .ply. BadInput: another ending. Error: the file cannot be written."""
-        self._call("world_export_surface", os.fsencode(path))
+        self._call("world_export_surface", path_of(path))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _structs as c
 from ._handle import Handle
-from ._library import address_of, array_of, array_or_none, struct, text_of, whole
+from ._library import address_of, array_of, array_or_none, number_of, of_kind, seconds_of, struct, text_of, whole
 from .draw import columns, download, off_screen_of
 from .parts import Mesh, SkinStats
 
@@ -21,8 +21,9 @@ class Skin(Handle):
     _instead = "create another"
 
     def __init__(self, context: Handle, mesh: Mesh, liquid: Any, map_size: int) -> None:
-        self._vertices, self._map_size = len(mesh.positions), whole(map_size, 0, 2**15, "map_size") or 1024
-        options = struct(c.SkinOptions, mesh=ctypes.pointer(mesh._c), json=text_of(liquid), map_size=map_size)
+        self._vertices, size = len(of_kind(mesh, Mesh, "mesh").positions), whole(map_size, 0, 2**15, "map_size")
+        self._map_size = size or 1024
+        options = struct(c.SkinOptions, mesh=ctypes.pointer(mesh._c), json=text_of(liquid), map_size=size)
         pointer = c_void_p()
         context._call("skin_create", options, pointer)
         owned = context._owned
@@ -30,7 +31,7 @@ class Skin(Handle):
 
     def add(self, place: ArrayLike, microlitres: float) -> None:
         """Adds a drop, which appears with the next step, at the point of the skin nearest to `place` ((3,) m, in the mesh's frame)."""
-        self._call("skin_add", address_of(array_of(place, (3,), "place")), microlitres)
+        self._call("skin_add", address_of(array_of(place, (3,), "place")), number_of(microlitres, "microlitres"))
 
     def step(self, seconds: float, gravity: ArrayLike | None = None, wind: ArrayLike | None = None, to_world: ArrayLike | None = None,
              positions: ArrayLike | None = None, positions_buffer: int = 0) -> None:
@@ -38,7 +39,7 @@ class Skin(Handle):
         mesh's frame -> the world; positions: (vertices, 3) m, of a mesh that deforms, or positions_buffer: the name of an OpenGL buffer
         with a vec4 a vertex."""
         inputs, _kept = self._inputs(gravity, wind, to_world, positions, positions_buffer)
-        self._call("skin_step", inputs, seconds)
+        self._call("skin_step", inputs, seconds_of(seconds))
 
     def _inputs(self, gravity: ArrayLike | None = None, wind: ArrayLike | None = None, to_world: ArrayLike | None = None,
                 positions: ArrayLike | None = None, positions_buffer: int = 0) -> tuple[c.SkinInputs, list[Any]]:

@@ -2,12 +2,12 @@
 from __future__ import annotations
 
 import os
-from ctypes import c_size_t, c_void_p
+from ctypes import c_void_p
 from typing import TYPE_CHECKING, NamedTuple, Union
 
 from . import _structs as c
 from ._handle import Handle
-from ._library import struct
+from ._library import path_of, struct, whole
 from .draw import Drawn
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Snapshot(Drawn):
         """Puts frame `frame` (from 0) of a file that World.record wrote into the snapshot, with the look and liquid of `world`, which is not
         changed. BadInput: it is no recording, is damaged or has no such frame."""
         recorded = struct(c.Recorded)
-        self._call("snapshot_replay", world._pointer, os.fsencode(path), c_size_t(frame), recorded)
+        self._call("snapshot_replay", world._pointer, path_of(path), whole(frame, 0, 2**63 - 1, "frame"), recorded)
         return Recorded(recorded.frames, recorded.time)
 
 
@@ -54,12 +54,12 @@ class Recording:
 
     def __init__(self, world: World, path: Path) -> None:
         self._world: World | None = world
-        world._call("world_record", os.fsencode(path))
+        world._call("world_record", path_of(path))
 
     def close(self) -> None:
         """Ends the recording: the file is complete. Error: it cannot be written."""
         world, self._world = self._world, None
-        if world is not None and world._pointer is not None:
+        if world is not None and world._owned is not None and not world._owned.inherited():
             world._call("world_record", None)
 
     def __enter__(self) -> Recording:

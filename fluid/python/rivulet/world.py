@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 
 from . import _structs as c
 from ._handle import Handle, Lease
-from ._library import BadInput, Error, address_of, array_at, array_of, array_or_none, call, room_of, struct, text_of, view_of, whole
+from ._library import (BadInput, Error, address_of, array_at, array_of, array_or_none, call, each_of, number_of, of_kind, path_of, room_of, seconds_of,
+                       struct, text_of, view_of, whole)
 from .parts import Air, Array, Body, Box, Mesh, Particles, Sphere, Stats, rows_of
 from .query import Path, Queries
 from .skin import Skin
@@ -48,6 +49,10 @@ class Raised:
 
 def _host_of(host: Any, raised: Raised) -> c.BodyHost:
     """rivulet_body_host of an object with its functions. It refers to no World, which must be destroyed before its context."""
+    for name in ("advance", "reset"):
+        if not callable(getattr(host, name, None)):
+            raise BadInput(f"body_host has no function {name}: give an object with advance(loads, gravity, seconds, states) and reset(states)")
+
     def advance(_: Any, loads: int, gravity: Any, seconds: float, states: int, count: int) -> None:
         def work() -> None:  # copies: the library's memory is valid during the call only
             theirs = view_of(states, c.STATE, count)
@@ -79,6 +84,7 @@ def _host_of(host: Any, raised: Raised) -> c.BodyHost:
 class World(Queries):
     """Particles in a box, with walls and bodies; made by Context.world. Close it before, with or after its context."""
 
+    _anew = "create another with Context.world()"
     _instead = "pickle its scene, walls and bodies, and World.state(); set_state() restores it in another world of these"
 
     def __init__(self, context: Handle, scene: Any, walls: Sequence[Mesh], bodies: Sequence[Body], body_host: Any,
@@ -88,6 +94,7 @@ class World(Queries):
         if moving is not None and len(moving) != count:
             raise BadInput(f"{len(moving)} velocities were given for {count} particles: give one for each")
         self._raised, self._later, self._arrived, self._room = Raised(), {}, [], 0
+        walls, bodies = each_of(walls, Mesh, "walls"), each_of(bodies, Body, "bodies")
         host = None if body_host is None else _host_of(body_host, self._raised)
         text = text_of(scene)
         options = struct(c.WorldOptions, json=text, walls=(c.Mesh * len(walls))(*(w._c for w in walls)), walls_count=len(walls),
@@ -123,14 +130,14 @@ class World(Queries):
         at the end of the frame; None: as before. Both in the order of the walls' ids.
         BadInput: values that are not finite or absurd. Error: out of memory; stopped by Context.stop."""
         if gravity is None and poses is None and shapes is None:
-            self._call("world_step", None, seconds)
+            self._call("world_step", None, seconds_of(seconds))
             return
         down, posed = array_or_none(gravity, (3,), "gravity"), array_or_none(poses, (-1, 7), "poses")
         kept = [array_or_none(shape, (-1, 3), f"shapes[{k}]") for k, shape in enumerate(shapes or ())]
         inputs = struct(c.Inputs, gravity=address_of(down), poses=address_of(posed), poses_count=0 if posed is None else len(posed))
         if kept:
             inputs.shapes, inputs.shapes_count = (c_void_p * len(kept))(*map(address_of, kept)), len(kept)
-        self._call("world_step", inputs, seconds)
+        self._call("world_step", inputs, seconds_of(seconds))
 
     def reset(self) -> None:
         """Back to t = 0."""
@@ -243,7 +250,7 @@ class World(Queries):
         """Adds a wall while the world runs; returns its id. It is baked beside the frames, 0.1 to 5 s, and acts from a later step on. Walls
         given at the start have their index as id."""
         id = c_uint32()
-        self._call("world_add_wall", wall._c, id)
+        self._call("world_add_wall", of_kind(wall, Mesh, "wall")._c, id)
         return id.value
 
     def remove_wall(self, id: int) -> None:
@@ -282,7 +289,7 @@ class World(Queries):
         """Adds a Body while the world runs, within the memory of fluid.bodies.maxSamples; returns its id. One with a mesh is made ready beside the
         frames, and is in the world from a later step on."""
         id = c_uint32()
-        self._call("world_add_body", body._c, id)
+        self._call("world_add_body", of_kind(body, Body, "body")._c, id)
         return id.value
 
     def remove_body(self, id: int) -> None:
@@ -294,13 +301,14 @@ class World(Queries):
         """Steps skins, as Skin.step does each, and the drops in the air between them, which belong to the world: what leaves a skin falls, lands
         on a skin that it meets, goes into the water or is lost below `floor` (m). After the world's step of the same `seconds`. inputs: for
         each skin a dict of arguments of Skin.step. Water is exchanged in a world with skins_bring above 0."""
+        skins = each_of(skins, Skin, "skins")
         if inputs and len(inputs) != len(skins):
             raise BadInput(f"{len(inputs)} inputs were given for {len(skins)} skins: give one for each")
         made = [skin._inputs(**given) for skin, given in zip(skins, inputs)]
         down = array_or_none(gravity, (3,), "gravity")
-        air = struct(c.Air, gravity=address_of(down), floor=floor)
+        air = struct(c.Air, gravity=address_of(down), floor=number_of(floor, "floor"))
         self._call("world_step_skins", (c_void_p * len(skins))(*(skin._pointer for skin in skins)),
-                   (c.SkinInputs * len(made))(*(each for each, _ in made)) if made else None, len(skins), seconds, air)
+                   (c.SkinInputs * len(made))(*(each for each, _ in made)) if made else None, len(skins), seconds_of(seconds), air)
         return Air(*(getattr(air, name) for name in Air._fields))
 
     def air_drops(self) -> Array:
@@ -326,12 +334,12 @@ class World(Queries):
 
     def save(self, path: Path) -> None:
         """Saves all that the next step depends on to a file. Error: it cannot be written."""
-        self._call("world_save", os.fsencode(path))
+        self._call("world_save", path_of(path))
 
     def restore(self, path: Path) -> None:
         """Restores a file that save() wrote, of a world of the same scene; on the cpu the restored run is bit-identical. BadInput: it is of
         another scene, or damaged."""
-        self._call("world_restore", os.fsencode(path))
+        self._call("world_restore", path_of(path))
 
     def state(self) -> bytes:
         """What save() writes, in memory: it can be pickled and sent to another process."""

@@ -31,6 +31,18 @@ done
 "$program" run column.json --no-render --frames 50 --backend cpu --set fluid.foam.most=2000 --set fluid.foam.trappedAir=100000 --record foam.rrec --out stats >log 2>&1 || { cat log; exit 1; }
 "$program" export foam.rrec --format zarr --out sets >log 2>&1
 /usr/bin/python3 "$here/check.py"
+# An export that is killed leaves a hidden folder, which the next one of that name removes; not those of processes that run, or of other machines.
+mkdir killed
+"$program" export column.json --format zarr --seconds 20 --backend cpu --out killed >log 2>&1 &
+victim=$!
+until ls -d killed/.rivulet-*-$victim-column.zarr >/dev/null 2>&1; do kill -0 $victim 2>/dev/null || { cat log; exit 1; }; sleep 0.02; done
+kill -9 $victim
+wait $victim || true
+[ -d killed/.rivulet-*-$victim-column.zarr ] && [ ! -e killed/column.zarr ] || { echo "the export was not killed in the middle"; exit 1; }
+mkdir "killed/.rivulet-$(uname -n)-$$-column.zarr" "killed/.rivulet-another-$victim-column.zarr"
+"$program" export column.json --format zarr --seconds 0.1 --backend cpu --out killed >log 2>&1 || { cat log; exit 1; }
+[ "$(ls -A killed | LC_ALL=C sort | tr '\n' ' ')" = "$(printf '%s\n' ".rivulet-$(uname -n)-$$-column.zarr" ".rivulet-another-$victim-column.zarr" column.zarr | LC_ALL=C sort | tr '\n' ' ')" ] ||
+    { echo "left in the folder:"; ls -A killed; exit 1; }
 
 # The sweep of docs/datasets.md with 20 runs, each as a task of its own.
 for name in dam.json SWEEP.json load.py; do

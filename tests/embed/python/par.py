@@ -116,7 +116,8 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     with context.world(DROP, walls=[sheet]) as world:
         for height in np.linspace(0.1, 0.3, 90):
             world.step(1 / 60, shapes=[floor + [0, height, 0]])
-        assert 0.28 < world.particles().positions[:, 1].min() < 0.36, world.particles().positions[:, 1].min()
+        low = world.particles().positions[:, 1].min()
+        assert abs(low - (0.3 + 0.5 * 0.05)) < 0.1 * 0.05, low  # half a spacing above the floor; it may be pressed in by a tenth of one
         refused(lambda: world.step(1 / 60, shapes=[floor[:2], floor]), "shapes")
 
     # Sources: an emitter of 1 l/s fills, a second later 1 l are there.
@@ -125,7 +126,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         world.set_sources(emitters=[{"position": [0.5, 0.5, 0.5], "direction": [0, -1, 0], "litresPerSecond": 1}])
         for _ in range(60):
             world.step(1 / 60)
-        assert abs(world.stats().particles * 0.03**3 / 1e-3 - 1) < 0.1, world.stats().particles
+        assert abs(world.stats().particles - 1e-3 / 0.03**3) < 1, world.stats().particles  # of 37: whole particles
         assert len(world.particles().ids) == len(np.unique(world.particles().ids)) == world.stats().particles
         before = len(world.particles().ids)
         for _ in range(10):  # more than there was room for, in the call before
@@ -143,7 +144,8 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         grid = np.array([(x, y, z) for x in (-0.05, 0.05) for y in (-0.05, 0.05) for z in (-0.05, 0.05)])
         ball = rivulet.Float(grid, np.full(8, 1e-3), mass=1, position=(0.5, 0.25, 0.5))
         loads = world.buoyancy([ball, pickle.loads(pickle.dumps(ball))], 0.01)
-        assert np.allclose(loads["force"], [0, 8e-3 * 1000 * 9.81, 0], atol=4) and loads.shape == (2,), loads
+        # The lift takes the water's density about the points, a sum over particles, which is up to 3 % below that at rest. No drag, for it has none.
+        assert np.allclose(loads["force"], [0, 8e-3 * 1000 * 9.81, 0], rtol=0.03, atol=0) and loads.shape == (2,), loads
         arrived = []
         world.sample_later([[0.5, 0.25, 0.5], [0.5, 0.9, 0.5]], arrived.append)
         assert len(arrived) == 1 and (arrived[0] == world.sample([[0.5, 0.25, 0.5], [0.5, 0.9, 0.5]])).all()
@@ -182,7 +184,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         assert most > 0 and stats.left > 0 and abs(stats.left - air.in_air - air.lost - air.into_water) < 1e-13, (stats, air)
         refused(lambda: world.step_skins([skin], 1 / 60, inputs=[{}, {}]), "2 inputs", "1 skins")
 
-    # A host of bodies hears of those that come and go.
+    # A host of bodies is called for those that come and go.
     class Host:
         said = []
 

@@ -71,7 +71,8 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         refused(lambda: context.world({"emitters": [{"position": [0, 9, 0]}]}), "emitters[0].position", "outside fluid.box")
         refused(lambda: world.step(0.01, poses=[[0, 0, 0, 0, 0, 0, 1]]), "1 poses")
     assert context.memory == before
-    refused(lambda: world.step(0.01), "world is NULL")  # closed
+    refused(lambda: world.step(0.01), "the World is closed", "Context.world()")
+    refused(world.stats, "the World is closed")
 
     # Particles of the caller's own: a lattice that turns about its centre, with the energy m w^2 r^2 / 2, again after a reset.
     places = np.stack(np.meshgrid(*[np.arange(0.325, 0.7, 0.05)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -182,7 +183,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     refused(lambda: rivulet.Mesh([[0, 0, 0]], [[0, 0]]), "shape")
     refused(lambda: context.world(DROP, walls=[rivulet.Mesh([[0, 0, 0]], [[0, 0, 5]])]), "walls[0]")
 
-    # A body that a host in Python moves: it hears of gravity and loads, and what it raises comes out of step().
+    # A body that a host in Python moves: it receives gravity and loads, and what it raises comes out of step().
     class Hand:
         calls = resets = 0
         lifted = 0.0
@@ -286,6 +287,43 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     refused(lambda: rivulet.Body(cube, 1, (1, 1), 1), "inertia")
     refused(lambda: rivulet.Context(backend="cpu", memory_limit=-1), "memory_limit")
     refused(lambda: context.world('{"fluid": {}}\0'), "value 0")
+    # Whatever is of a wrong type is bad input, too.
+    with context.world(DROP) as world:
+        for seconds in ("a", None, [1, 2]):
+            refused(lambda: world.step(seconds), "seconds is", "give a number")
+        refused(lambda: world.step(-1), "seconds is -1", "0 or more")
+        refused(lambda: world.step(-1, gravity=(0, 0, 0)), "seconds is -1")
+        refused(lambda: world.step(0.01, gravity="down"), "gravity is no array")
+        refused(lambda: world.step(0.01, gravity=(1, 2)), "give (3,)")
+        try:
+            world.step(0.01, gravity=(1, 2))
+        except rivulet.BadInput as error:
+            assert "-1" not in str(error), error
+        refused(lambda: world.heights([[1, 2, 3]]), "(-1, 2), where -1 is any length")
+        refused(lambda: world.save(3), "the path is 3")
+        refused(lambda: world.set_volumes([3]), "a volume is 3")
+        refused(lambda: world.add_wall(body), "give a Mesh")
+        refused(lambda: world.buoyancy([3], 0.1), "floats[0] is 3", "Float")
+        refused(lambda: world.wall(float("nan")), "id is nan")
+        world.step(np.float32(0.001))
+        with world.record(os.path.join(sys.argv[1], "twice.rrec")):
+            refused(lambda: world.record(os.path.join(sys.argv[1], "again.rrec")), "being recorded", "close its Recording")
+    for scene in (b"{}", {1, 2}, {"fluid": {"spacing": object()}}, {"fluid": {1j}}):
+        refused(lambda: context.world(scene), "JSON has no", "give a dict")
+    refused(lambda: context.world(DROP, walls=plate), "give a list of Mesh")
+    refused(lambda: context.world(DROP, walls=[body]), "walls[0]", "give a Mesh")
+    refused(lambda: context.world(DROP, bodies=[body], body_host=object()), "body_host has no function advance")
+    refused(lambda: rivulet.Context(backend="cpu", threads=float("nan")), "threads is nan")
+    refused(lambda: rivulet.Context(backend="cpu", threads=2**31), "threads", "2147483647")
+    refused(lambda: rivulet.Context(backend="cpu", threads="2"), "threads is '2'")
+    refused(lambda: rivulet.Context(backend="cpu", memory_limit=2**63), "memory_limit")
+    refused(lambda: rivulet.Mesh(mesh, [[0, 1, 2]], friction="smooth"), "friction is 'smooth'", "number")
+    refused(lambda: context.skin(rivulet.Mesh(mesh, [[0, 1, 2]])), "the Mesh has no uvs")
+    closed = rivulet.Context(backend="cpu")
+    snapshot = closed.snapshot
+    closed.close()
+    for work in (lambda: closed.world(DROP), lambda: closed.device, lambda: closed.memory, closed.times, snapshot):
+        refused(work, "the Context is closed: create another")
     context.world({"fluid": {"spacing": np.float32(0.05), "blocks": [{"max": np.array([0.2, 0.2, 0.2])}]}}).close()
 
     square = rivulet.Mesh([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0]], [[0, 1, 2], [0, 2, 3]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]])

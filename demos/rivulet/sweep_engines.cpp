@@ -66,6 +66,17 @@ Result<size_t> longestArray() {
     return most;
 }
 
+// A file name in an option of a script: quoted, because it may have blanks, and without the symbols that Slurm replaces. Error (badInput): it
+// has characters that Slurm cannot read.
+Result<std::string> slurmName(const std::string& name) {
+    if (name.find_first_of("\"\\\n\r") != std::string::npos)
+        return badInput(fmt::format("{} has a quotation mark, a backslash or a line break, which Slurm does not accept; choose another --output",
+                                    printable(name)));
+    std::string escaped;
+    for (const char c : name) escaped += c == '%' ? std::string("%%") : std::string(1, c);
+    return escaped;
+}
+
 // "0-4,7,9-11".
 std::string rangesOf(const std::vector<size_t>& sorted) {
     std::string text;
@@ -96,6 +107,8 @@ int sweepWithSlurm(const Sweep& sweep, const SweepFolder& folder, int threads, b
         fmt::print("all {} tasks have ended: {}\n", sweep.tasks, printable(folder.file("results.csv")));
         return kDone;
     }
+    const Result<std::string> logs = slurmName(folder.file("slurm"));
+    if (!logs) return report(logs.error());
     constexpr size_t kDefaultArray = 1001;  // Slurm's default MaxArraySize
     size_t most = kDefaultArray;
     if (!dryRun) {
@@ -116,7 +129,8 @@ int sweepWithSlurm(const Sweep& sweep, const SweepFolder& folder, int threads, b
     const auto number = std::find(words.begin(), words.end(), "--task") + 1;
     *number = "TASK";
     std::string line = shellLine(words);
-    line.replace(line.find(" TASK"), 5, " \"$task\"");
+    constexpr std::string_view kNumber = " --task TASK";
+    line.replace(line.rfind(kNumber), kNumber.size(), " --task \"$task\"");
     const std::string script = fmt::format(
         "#!/bin/bash\n"
         "# An array job: sbatch {0}/slurm.sh. Options of sbatch that are not here come from the environment: SBATCH_PARTITION, ...\n"
@@ -124,13 +138,13 @@ int sweepWithSlurm(const Sweep& sweep, const SweepFolder& folder, int threads, b
         "#SBATCH --array={1}\n"
         "#SBATCH --ntasks=1\n"
         "#SBATCH --cpus-per-task={2}\n"
-        "#SBATCH --output={0}/slurm/%a.txt\n"
+        "#SBATCH --output=\"{6}/%a.txt\"\n"
         "status=0\n"
         "for ((task = SLURM_ARRAY_TASK_ID; task < {3}; task += {4})); do\n"
         "    {5} || status=1\n"
         "done\n"
         "exit $status\n",
-        folder.path(), array, threads, sweep.tasks, stride, line);
+        folder.path(), array, threads, sweep.tasks, stride, line, *logs);
     const std::string name = folder.file("slurm.sh");
     if (Status written = writeFileAtomic(name, script, 0777); !written) return report(written.error());
     if (dryRun) {

@@ -139,6 +139,21 @@ TEST(ProgramSweep, AnArrayThatIsTooLongForSlurmSharesItsTasks) {
     EXPECT_EQ(rows[2], (std::vector<std::string>{"1402", "1402"}));
 }
 
+// Slurm splits its options at blanks and replaces symbols that begin with %.
+TEST(ProgramSweep, SlurmsScriptQuotesItsFolder) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "a TASK 9%", "--with", "slurm", "--dry-run"}, within(scratch)).code, 0);
+    const std::string script = textAt(scratch, "a TASK 9%/slurm.sh");
+    EXPECT_NE(script.find("#SBATCH --output=\"" + scratch.path().string() + "/a TASK 9%%/slurm/%a.txt\"\n"), std::string::npos) << script;
+    RunOptions index = within(scratch);
+    index.environment = {{"SLURM_ARRAY_TASK_ID", "1"}};
+    ASSERT_EQ(runCommand({"bash", "a TASK 9%/slurm.sh"}, index).code, 0);
+    EXPECT_TRUE(fs::exists(scratch.path() / "a TASK 9%/tasks/1"));
+    expectRefusal(runProgram({"sweep", "s.json", "--output", "a\"b", "--with", "slurm", "--dry-run"}, within(scratch)), 2,
+                  "choose another --output");
+}
+
 // Each task leaves the number of its process: one that is run again has another.
 const std::string kSlowSweep =
     R"x({"command": "/bin/sh -c 'echo {k} $$ >{task}/process; for k in 1 2 3 4 5 6 7 8; do echo >>{task}/beats; sleep 0.05; done'",

@@ -14,6 +14,7 @@
 #include "demos/rivulet/run_options.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/table.h"
+#include "fluid/scene/scene_inputs.h"
 
 namespace rivulet {
 
@@ -409,7 +410,8 @@ std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command
     return words;
 }
 
-Status checkTasks(const Sweep& sweep) {
+Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
+    std::set<std::string> files;
     std::error_code error;
     fs::current_path(sweep.folder, error);
     if (error) return failed(fmt::format("the folder {} cannot be entered: {}", sweep.folder, error.message()));
@@ -418,7 +420,10 @@ Status checkTasks(const Sweep& sweep) {
             if (command.words.front() != "run") continue;
             std::vector<std::string> words = wordsOf(sweep, command, task, kTaskFolder);
             const auto read = readRun({words.begin() + 1, words.end()});
-            if (read && *read) continue;
+            if (read && *read) {
+                for (const SceneInput& input : inputsOf((*read)->scene)) files.insert(input.path);
+                continue;
+            }
             if (read) return badInput(fmt::format("{}: --help is no command of a sweep; leave it out", command.place));
             const std::string& why = read.error().message;
             if (why.find(kTaskFolder) != std::string::npos) continue;  // a scene that a command before it makes
@@ -427,7 +432,7 @@ Status checkTasks(const Sweep& sweep) {
                 if (why.find(parameter.name + "=") != std::string::npos) place = parameter.place;
             return Error{fmt::format("{}: task {}: {}", place, task, why), read.error().fault};
         }
-    return ok();
+    return files;
 }
 
 }  // namespace rivulet

@@ -7,6 +7,7 @@
 // docs/sweeps.md describes the file.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,7 +47,7 @@ Result<Sweep> readSweep(std::string_view text, const std::string& file);
 std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command, size_t task, const std::string& taskFolder);
 
 // Checks the arguments and the scene of each `run` of each task as `rivulet run` does; changes the working directory to the sweep's folder.
-// Error: as readRun, with the place of the parameter that the message names, or of the command.
-Status checkTasks(const Sweep& sweep);
+// Returns the files that the scenes read. Error: as readRun, with the place of the parameter that the message names, or of the command.
+Result<std::set<std::string>> checkTasks(const Sweep& sweep);
 
 }  // namespace rivulet

@@ -66,12 +66,12 @@ Result<size_t> longestArray() {
     return most;
 }
 
-// A file name in an option of a script: quoted, because it may have blanks, and without the symbols that Slurm replaces. Error (badInput): it
-// has characters that Slurm cannot read.
+// A file name in an option of a script: quoted, because it may have blanks, and without the symbols that Slurm replaces. Error (badInput):
+// it has characters that Slurm cannot read.
 Result<std::string> slurmName(const std::string& name) {
     if (name.find_first_of("\"\\\n\r") != std::string::npos)
-        return badInput(fmt::format("{} has a quotation mark, a backslash or a line break, which Slurm does not accept; choose another --output",
-                                    printable(name)));
+        return badInput(fmt::format(
+            "{} has a quotation mark, a backslash or a line break, which Slurm does not accept; choose another --output", printable(name)));
     std::string escaped;
     for (const char c : name) escaped += c == '%' ? std::string("%%") : std::string(1, c);
     return escaped;

@@ -1,6 +1,7 @@
 // The folder of a sweep, which several processes use at a time:
 //
-//     sweep.json      the sweep, as it was given
+//     sweep.json      the sweep, as it was given; tasks read it
+//     origin.json     the folder of the commands, and what the tasks depend on (sweep_origin.h)
 //     tasks.txt       one command line a task
 //     tasks/7         a task that has ended: what its commands wrote, and log.txt, what they printed
 //     tasks/7.part    one that runs, failed or was killed; tasks/7.lock: locked (flock) while it runs
@@ -25,9 +26,14 @@ class SweepFolder {
     std::string ended(size_t task) const { return file("tasks/" + std::to_string(task)); }
     std::string part(size_t task) const { return ended(task) + ".part"; }
 
-    // Writes sweep.json and tasks.txt, unless they are there. `threads`: as SweepOptions::threads. Error (badInput): the folder is that of
-    // another sweep, unless `sweep` has the same tasks and then more; as checkTasks. (failed): not writable.
+    // Writes sweep.json, origin.json and tasks.txt, unless they are there with the same content. `text`: the content of sweep.file;
+    // `threads`: of each task. Error (badInput): the folder is that of another sweep, unless `sweep` has the same tasks and then more; as
+    // checkOrigin and checkTasks. (failed): not writable.
     Status prepare(const Sweep& sweep, std::string_view text, int threads) const;
+
+    bool isPrepared() const;
+    // The sweep that was prepared. Error: as readSweep and checkOrigin.
+    Result<Sweep> prepared() const;
 
     bool hasEnded(size_t task) const;
     std::vector<size_t> endedTasks() const;  // in order
@@ -39,6 +45,7 @@ class SweepFolder {
     Status collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt) const;
 
   private:
+    Status writeTasks(const Sweep& sweep, int threads) const;
     std::string path_;
 };
 

@@ -73,7 +73,8 @@ Status checkEnded(const std::string& folder) {
     const SweepFolder tasks(folder);
     for (size_t task = 0; task < sweep->tasks; ++task)
         if (!tasks.hasEnded(task))
-            return badInput(fmt::format("task {} of {} in {} has not ended; run the sweep again until all have", task, sweep->tasks, folder));
+            return badInput(
+                fmt::format("task {} of {} in {} has not ended; run the sweep again until all have", task, sweep->tasks, folder));
     return ok();
 }
 

@@ -344,5 +344,69 @@ TEST(ProgramSweep, AChangedSweepIsRefusedUnlessItGrew) {
     EXPECT_EQ(linesIn(textAt(scratch, "s/tasks.txt")), 3U);
 }
 
+TEST(ProgramSweep, TheListOfTasksFollowsTheOptions) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    EXPECT_EQ(textAt(scratch, "s/tasks.txt").find("--threads"), std::string::npos);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--threads", "3", "--dry-run"}, within(scratch)).code, 0);
+    EXPECT_NE(textAt(scratch, "s/tasks.txt").find("--task 1 --threads 3\n"), std::string::npos);
+    fs::rename(scratch.path() / "s.json", scratch.path() / "t.json");
+    ASSERT_EQ(runProgram({"sweep", "t.json", "--output", "s", "--dry-run"}, within(scratch)).code, 0);
+    EXPECT_NE(textAt(scratch, "s/tasks.txt").find("/t.json --output"), std::string::npos);
+}
+
+// Results of two scenes, or of two versions, are never in one table.
+TEST(ProgramSweep, AFolderIsThatOfItsScenes) {
+    const Scratch scratch;
+    fs::create_directory(scratch.path() / "a");
+    scratch.file("a/small.json", smallScene());
+    scratch.file("a/s.json", kSmallSweep);
+    const auto swept = [&](const char* folder, bool dry = true) {
+        std::vector<std::string> words = {"sweep", std::string(folder) + "/s.json", "--output", "s"};
+        if (dry) words.emplace_back("--dry-run");
+        return runProgram(words, within(scratch));
+    };
+    ASSERT_EQ(swept("a").code, 0);
+    // The same sweep beside another scene of the same name, and a scene that was edited.
+    const std::string edited = smallScene() + "\n";
+    fs::copy(scratch.path() / "a", scratch.path() / "b");
+    scratch.file("b/small.json", edited);
+    expectRefusal(swept("b"), 2, "b/small.json is not the file that the tasks in ");
+    scratch.file("a/small.json", edited);
+    expectRefusal(swept("a"), 2, "a/small.json is not the file that the tasks in ");
+    expectRefusal(runProgram({"sweep", "a/s.json", "--output", "s", "--task", "0"}, within(scratch)), 2, "is not the file that");
+    fs::remove(scratch.path() / "a/small.json");
+    expectRefusal(swept("a"), 2, "small.json cannot be read: it does not exist; restore it");
+    // A folder that was moved with its scenes.
+    scratch.file("a/small.json", smallScene());
+    fs::rename(scratch.path() / "a", scratch.path() / "c");
+    const Outcome moved = swept("c", false);
+    ASSERT_EQ(moved.code, 0) << moved.err;
+    EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 9U);
+    // Another version.
+    std::string origin = textAt(scratch, "s/origin.json");
+    const size_t at = origin.find(RIVULET_VERSION);
+    ASSERT_NE(at, std::string::npos);
+    scratch.file("s/origin.json", origin.replace(at, std::string(RIVULET_VERSION).size(), "0.0.9"));
+    expectRefusal(swept("c"), 2, "were made by version 0.0.9 of rivulet");
+}
+
+// Slurm may start a task hours after its sweep was submitted.
+TEST(ProgramSweep, TasksDoNotDependOnTheFileThatTheyWereMadeFrom) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/cp beside.txt {task}/{k}.txt", "parameters": {"k": [1, 2, 3]}})");
+    scratch.file("beside.txt", "beside");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "out/s", "--dry-run"}, within(scratch)).code, 0);
+    scratch.file("s.json", "{ edited");
+    for (const char* task : {"0", "2"}) {
+        const Outcome ran = runProgram({"sweep", "s.json", "--output", "out/s", "--task", task}, within(scratch));
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        fs::remove(scratch.path() / "s.json");
+    }
+    EXPECT_EQ(textAt(scratch, "out/s/tasks/2/3.txt"), "beside");
+    expectRefusal(runProgram({"sweep", "s.json", "--output", "out/s", "--task", "3"}, within(scratch)), 2, "the last is 2");
+}
+
 }  // namespace
 }  // namespace rivulet::testing::program_sweep_test

@@ -176,7 +176,7 @@ int sweepWithParallel(const Sweep& sweep, const SweepFolder& folder, int jobs, i
                                         .errors = STDERR_FILENO},
                                        "parallel", "parallel");
     if (!status) return report(status.error());
-    if (Status collected = folder.collect(sweep); !collected) return report(collected.error());
+    if (const auto collected = folder.collect(sweep); !collected) return report(collected.error());
     const size_t open = openTasks(sweep, folder).size();
     fmt::print("{}: {} of {} tasks have ended\n", printable(folder.file("results.csv")), sweep.tasks - open, sweep.tasks);
     return open > 0 ? kFailed : kDone;

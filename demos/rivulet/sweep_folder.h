@@ -17,6 +17,11 @@
 
 namespace rivulet {
 
+struct TableSize {
+    size_t rows = 0;     // without the header
+    size_t numbers = 0;  // columns that come from stats.json
+};
+
 class SweepFolder {
   public:
     explicit SweepFolder(std::string path) : path_(std::move(path)) {}  // absolute
@@ -41,8 +46,8 @@ class SweepFolder {
     Descriptor lock(size_t task, std::optional<Error>& error) const;
 
     // Adds the tasks that have ended to results.csv and removes those whose folder is gone; `again` is read again. The bytes depend on
-    // nothing but the tasks. Error (failed): not writable.
-    Status collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt) const;
+    // nothing but the tasks. Returns the size of the table. Error (failed): not writable.
+    Result<TableSize> collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt) const;
 
   private:
     Status writeTasks(const Sweep& sweep, int threads) const;

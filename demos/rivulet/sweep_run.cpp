@@ -99,7 +99,7 @@ int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int
     fs::rename(part, name, renamed);
     if (renamed) return report(failed(fmt::format("{} cannot be renamed to {}: {}", part, name, renamed.message())));
     (void)::unlink((name + ".lock").c_str());
-    if (Status collected = folder.collect(sweep, task); !collected) return report(collected.error());
+    if (const auto collected = folder.collect(sweep, task); !collected) return report(collected.error());
     return kDone;
 }
 
@@ -228,7 +228,6 @@ int runSweepTasks(const Sweep& sweep, const SweepFolder& folder, int jobs, int t
     const Graceful graceful;
     SweepJobs all(sweep, folder, jobs, threads);
     if (Status run = all.run(graceful); !run) return report(run.error());
-    if (Status collected = folder.collect(sweep); !collected) return report(collected.error());
     constexpr size_t kShown = 10;
     size_t shown = 0;
     for (const auto& [task, why] : all.failures())
@@ -236,9 +235,13 @@ int runSweepTasks(const Sweep& sweep, const SweepFolder& folder, int jobs, int t
     const size_t failures = all.failures().size();
     if (failures > kShown)
         (void)report(failed(fmt::format("{} more tasks failed; each has a log in {}", failures - kShown, folder.file("tasks"))));
+    const Result<TableSize> table = folder.collect(sweep);
+    if (!table) return report(table.error());
     fmt::print("{}: {} of {} tasks have ended{}{}\n", printable(folder.file("results.csv")), all.ended(), sweep.tasks,
                all.before() > 0 ? fmt::format(", {} of them before", all.before()) : "",
                failures > 0 ? fmt::format(", {} failed", failures) : "");
+    if (table->rows > 0 && table->numbers == 0)
+        fmt::print("no task has left a stats.json in its folder, {{task}}: the table has the parameters only\n");
     if (graceful.status() != 0) return graceful.status();
     return failures > 0 ? kFailed : kDone;
 }

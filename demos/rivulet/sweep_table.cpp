@@ -124,6 +124,8 @@ class ResultTable {
         lines_[task] = lineOf(task, row);
     }
 
+    TableSize size() const { return {.rows = lines_.size(), .numbers = columns_.size()}; }
+
     std::string text() const {
         std::string csv = fixed_;
         for (const std::string& name : columns_) csv += ',' + tableCell(name);
@@ -164,7 +166,7 @@ Result<std::vector<std::pair<std::string, std::string>>> numbersOf(const std::st
     return numbers;
 }
 
-Status SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again) const {
+Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again) const {
     const std::string name = file("results.csv"), lockName = file("results.lock");
     const Descriptor lock = openDescriptor(lockName, O_RDWR | O_CREAT);
     int locked = -1;
@@ -190,7 +192,9 @@ Status SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again) con
         table.add(task, *numbers);
     }
     const std::string now = table.text();
-    return now == before ? ok() : writeFileAtomic(name, now, 0666, Sync::none);
+    if (now != before)
+        if (Status written = writeFileAtomic(name, now, 0666, Sync::none); !written) return written.error();
+    return table.size();
 }
 
 }  // namespace rivulet

@@ -253,8 +253,20 @@ TEST(ProgramSweep, AFailedTaskIsReportedAndTriedAgain) {
     scratch.file("go", "go");
     EXPECT_EQ(runProgram({"sweep", "s.json"}, within(scratch)).code, 0);
     EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 4U);
-    scratch.file("missing.json", R"({"command": "/nowhere/program"})");
+    scratch.file("missing.json", R"({"command": "/usr/bin/env nowhere.program"})");
     expectRefusal(runProgram({"sweep", "missing.json", "--task", "0"}, within(scratch)), 1, "ended with exit status 127");
+}
+
+// A table that cannot be written does not hide which tasks failed.
+TEST(ProgramSweep, AFailedTaskIsReportedWithoutTheTable) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/false {k}", "parameters": {"k": [1]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    fs::create_directories(scratch.path() / "s/results.csv/in_the_way");
+    const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
+    EXPECT_EQ(swept.code, 1);
+    EXPECT_NE(swept.err.find("task 0: `/bin/false` ended with exit status 1"), std::string::npos) << swept.err;
+    EXPECT_NE(swept.err.find("results.csv"), std::string::npos) << swept.err;
 }
 
 // McKay, Beckman and Conover 1979: each of n equal parts of each range is used once. The same seed gives the same tasks everywhere.
@@ -316,6 +328,12 @@ TEST(ProgramSweep, ErrorsNamePlaceAndRemedyAndLeaveNothing) {
     refused(R"({"parameters": {}})", "`command` is missing");
     refused(R"({"command": "run small.json --frames {f}", "parameters": {"f": {"from": 0, "to": 3, "pieces": 4}}})",
             "cannot be cut into 4 pieces");
+    refused(R"({"command": "rnu small.json"})", "s.json:1:13: 'rnu' is no verb of rivulet; a program that is searched in PATH");
+    refused(R"({"command": "python3 x.py {n}", "parameters": {"n": [1]}})", "is written /usr/bin/env python3");
+    refused(R"({"command": "/no/such/prog"})", "the program /no/such/prog does not exist");
+    refused(R"({"command": "./small.json"})", "./small.json is not executable");
+    refused(R"({"command": "run small.json --out o", "parameters": {"fluid.viscosity": [1, 2]}})", "tasks 0 and 1 both write --out o;");
+    refused(R"({"command": "run small.json --stats=a{n}", "parameters": {"n": [1, 2, 1]}})", "tasks 0 and 2 both write --stats a1");
     refused("{", "s.json:1:");
     expectRefusal(runProgram({"sweep", "none.json"}, within(scratch)), 2, "none.json cannot be read");
     scratch.file("s.json", R"({"command": "/bin/true"})");
@@ -354,6 +372,24 @@ TEST(ProgramSweep, TheListOfTasksFollowsTheOptions) {
     fs::rename(scratch.path() / "s.json", scratch.path() / "t.json");
     ASSERT_EQ(runProgram({"sweep", "t.json", "--output", "s", "--dry-run"}, within(scratch)).code, 0);
     EXPECT_NE(textAt(scratch, "s/tasks.txt").find("/t.json --output"), std::string::npos);
+}
+
+TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    scratch.file("s.json",
+                 R"({"command": "run small.json --frames 2 --no-render --backend cpu", "parameters": {"fluid.viscosity": [0.1, 1]}})");
+    const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
+    ASSERT_EQ(swept.code, 0) << swept.err;
+    EXPECT_EQ(swept.out.find("no task"), std::string::npos) << swept.out;
+    EXPECT_FALSE(fs::exists(scratch.path() / "out"));
+    const auto rows = rowsAt(scratch, "s/results.csv");
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_NE(std::find(rows[0].begin(), rows[0].end(), "energy.kinetic"), rows[0].end());
+    // Programs without numbers: a notice, because the table has none.
+    scratch.file("t.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    const Outcome without = runProgram({"sweep", "t.json"}, within(scratch));
+    EXPECT_NE(without.out.find("no task has left a stats.json"), std::string::npos) << without.out;
 }
 
 // Results of two scenes, or of two versions, are never in one table.

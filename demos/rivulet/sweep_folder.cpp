@@ -148,10 +148,14 @@ std::vector<size_t> SweepFolder::endedTasks() const {
     return tasks;
 }
 
-Descriptor SweepFolder::lock(size_t task, std::optional<Error>& error) const {
+Descriptor SweepFolder::lock(size_t task, std::optional<Error>& error, bool wait) const {
     const std::string name = ended(task) + ".lock";
     Descriptor file = openDescriptor(name, O_RDWR | O_CREAT);
-    if (file.valid() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return file;
+    int locked = -1;
+    do {
+        locked = file.valid() ? ::flock(file.get(), wait ? LOCK_EX : LOCK_EX | LOCK_NB) : -1;
+    } while (file.valid() && locked != 0 && errno == EINTR);
+    if (locked == 0) return file;
     const int why = errno;
     if (!file.valid() || why != EWOULDBLOCK) error = failed(fmt::format("{} cannot be locked: {}", name, reasonOf(why)));
     return {};

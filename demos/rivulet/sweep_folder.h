@@ -5,7 +5,8 @@
 //     tasks.txt       one command line a task
 //     tasks/7         a task that has ended: what its commands wrote, and log.txt, what they printed
 //     tasks/7.part    one that runs, failed or was killed; tasks/7.lock: locked (flock) while it runs
-//     results.csv     the parameters and the numbers of stats.json of each task that has ended
+//     results.csv     the parameters and the numbers of stats.json of each task that has ended; results.lock: locked while it is written,
+//                     results.next: by the process that writes it next
 #pragma once
 
 #include <optional>
@@ -42,12 +43,18 @@ class SweepFolder {
 
     bool hasEnded(size_t task) const;
     std::vector<size_t> endedTasks() const;  // in order
-    // Locks a task. Not valid: another process has locked it, or `error` says why it cannot be locked.
-    Descriptor lock(size_t task, std::optional<Error>& error) const;
+    // Locks a task; `wait`: until another process, and what it started, has released it. Not valid: another process has locked it, or
+    // `error` gives the reason.
+    Descriptor lock(size_t task, std::optional<Error>& error, bool wait = false) const;
 
     // Adds the tasks that have ended to results.csv and removes those whose folder is gone; `again` is read again. The bytes depend on
-    // nothing but the tasks. Returns the size of the table. Error (failed): not writable.
-    Result<TableSize> collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt) const;
+    // nothing but the tasks; `next` is closed before the tasks are listed. Returns the size of the table. Error (failed): not writable.
+    Result<TableSize> collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt, Descriptor* next = nullptr) const;
+    // The same for a task that has just ended, unless another process is about to do it: the table is read and written once for all tasks
+    // that end meanwhile. When the last process has ended, it is complete.
+    Status collectSoon(const Sweep& sweep, size_t task) const;
+    // The tasks that end leave the table to this process, which collects after it has released the lock. Not valid: another process has it.
+    Descriptor takeTable() const;
 
   private:
     Status writeTasks(const Sweep& sweep, int threads) const;

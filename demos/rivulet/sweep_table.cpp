@@ -166,7 +166,22 @@ Result<std::vector<std::pair<std::string, std::string>>> numbersOf(const std::st
     return numbers;
 }
 
-Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again) const {
+Descriptor SweepFolder::takeTable() const {
+    Descriptor next = openDescriptor(file("results.next"), O_RDWR | O_CREAT);
+    if (next.valid() && ::flock(next.get(), LOCK_EX | LOCK_NB) == 0) return next;
+    return {};
+}
+
+// Two locks: one process collects, and one waits for it. A task that ends while another waits is in the table of that one, which reads the
+// folder after it has released results.next.
+Status SweepFolder::collectSoon(const Sweep& sweep, size_t task) const {
+    Descriptor next = takeTable();
+    if (!next.valid()) return ok();
+    const Result<TableSize> collected = collect(sweep, task, &next);
+    return collected ? ok() : Status(collected.error());
+}
+
+Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again, Descriptor* next) const {
     const std::string name = file("results.csv"), lockName = file("results.lock");
     const Descriptor lock = openDescriptor(lockName, O_RDWR | O_CREAT);
     int locked = -1;
@@ -174,6 +189,7 @@ Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t>
         locked = lock.valid() ? ::flock(lock.get(), LOCK_EX) : -1;
     } while (lock.valid() && locked != 0 && errno == EINTR);
     if (locked != 0) return failed(fmt::format("{} cannot be locked: {}", lockName, reasonOf(errno)));
+    if (next != nullptr) (void)next->close();
     std::set<size_t> all;
     for (const size_t task : endedTasks())
         if (task < sweep.tasks) all.insert(task);

@@ -169,7 +169,8 @@ std::map<std::string, std::string> processesOf(const Scratch& scratch) {
 
 uintmax_t beatsOf(const Scratch& scratch) {
     uintmax_t beats = 0;
-    for (const auto& entry : fs::directory_iterator(scratch.path() / "s/tasks")) {
+    std::error_code missing;
+    for (const auto& entry : fs::directory_iterator(scratch.path() / "s/tasks", missing)) {
         std::error_code none;
         const uintmax_t bytes = fs::file_size(entry.path() / "beats", none);
         if (!none) beats += bytes;
@@ -221,7 +222,7 @@ TEST(ProgramSweep, TwoProcessesDoATaskOnce) {
     };
     EXPECT_EQ(runProgram({"sweep", "s.json", "--task", "3"}, first).code, 0);
     EXPECT_EQ(second.code, 0) << second.err;
-    EXPECT_EQ(second.out, "task 3 is run by another process\n");
+    EXPECT_EQ(second.out, "task 3 is run by another process; waiting for its end\ntask 3 has ended before\n");
     EXPECT_EQ(textAt(scratch, "s/tasks/3/beats").size(), 8U);
     EXPECT_EQ(runProgram({"sweep", "s.json", "--task", "3"}, within(scratch)).out, "task 3 has ended before\n");
     // Two sweeps of the same folder share the tasks.
@@ -257,15 +258,72 @@ TEST(ProgramSweep, AFailedTaskIsReportedAndTriedAgain) {
     expectRefusal(runProgram({"sweep", "missing.json", "--task", "0"}, within(scratch)), 1, "ended with exit status 127");
 }
 
+// A script that starts a program: the signal reaches both, and an interrupted task has not failed. The signal is sent to the group, as a
+// terminal does.
+TEST(ProgramSweep, CtrlCEndsAllThatATaskStarted) {
+    const Scratch scratch;
+    scratch.file("beat.sh", "while true; do echo >>\"$1/beats\"; sleep 0.02; done\n");
+    scratch.file("s.json", R"x({"command": "/bin/bash -c '/bin/bash beat.sh {task} & wait' {k}", "parameters": {"k": [1, 2]}})x");
+    RunOptions options = within(scratch);
+    options.before = [] { (void)::setpgid(0, 0); };
+    bool sent = false;
+    options.whileRunning = [&](pid_t sweep) {
+        if (sent || beatsOf(scratch) < 4) return 0;
+        sent = true;
+        ::kill(-sweep, SIGINT);
+        return 0;
+    };
+    const Outcome stopped = runProgram({"sweep", "s.json", "--jobs", "2"}, options);
+    EXPECT_EQ(stopped.code, 128 + SIGINT);
+    EXPECT_EQ(stopped.err, "");
+    EXPECT_NE(stopped.out.find("0 of 2 tasks have ended\n"), std::string::npos) << stopped.out;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const uintmax_t beats = beatsOf(scratch);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_EQ(beatsOf(scratch), beats);
+}
+
+// A process that outlives its killed task holds the task's lock: the task waits for it and is then run, so that status 0 means that it
+// ended.
+TEST(ProgramSweep, ATaskThatIsHeldElsewhereIsDoneBeforeItReportsSuccess) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    Outcome task;
+    RunOptions options = within(scratch);
+    options.whileRunning = [&](pid_t) {
+        if (task.code < 0 && fs::exists(scratch.path() / "held")) task = runProgram({"sweep", "s.json", "--task", "1"}, within(scratch));
+        return 0;
+    };
+    ASSERT_EQ(runCommand({"/usr/bin/flock", "s/tasks/1.lock", "/bin/sh", "-c", "touch held; sleep 0.5"}, options).code, 0);
+    EXPECT_EQ(task.code, 0) << task.err;
+    EXPECT_TRUE(fs::exists(scratch.path() / "s/tasks/1"));
+}
+
+// The table is read and written once for all tasks that end while it is busy, and lacks none at the end.
+TEST(ProgramSweep, TasksThatEndTogetherAreAllInTheTable) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": {"from": 1, "to": 40, "count": 40}}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    ASSERT_EQ(runCommand({"/bin/sh", "-c", "while read -r line; do sh -c \"$line\" & done <s/tasks.txt; wait"}, within(scratch)).code, 0);
+    EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 41U);
+    // Another process has the table: tasks leave it to that one.
+    const std::string before = textAt(scratch, "s/results.csv");
+    for (const char* task : {"7", "8"}) fs::remove_all(scratch.path() / "s/tasks" / task);
+    ASSERT_EQ(runCommand({"/usr/bin/flock", "s/results.next", RIVULET_PROGRAM, "sweep", "s.json", "--task", "7"}, within(scratch)).code, 0);
+    EXPECT_EQ(textAt(scratch, "s/results.csv"), before) << "it was not written without task 8";
+    ASSERT_EQ(runProgram({"sweep", "s.json"}, within(scratch)).code, 0);
+    EXPECT_EQ(textAt(scratch, "s/results.csv"), before);
+}
+
 // A table that cannot be written does not hide which tasks failed.
 TEST(ProgramSweep, AFailedTaskIsReportedWithoutTheTable) {
     const Scratch scratch;
-    scratch.file("s.json", R"({"command": "/bin/false {k}", "parameters": {"k": [1]}})");
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
-    fs::create_directories(scratch.path() / "s/results.csv/in_the_way");
+    scratch.file("s.json",
+                 R"({"command": "/bin/sh -c 'rm s/results.csv; mkdir -p s/results.csv/in_the_way; exit {k}'", "parameters": {"k": [1]}})");
     const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
     EXPECT_EQ(swept.code, 1);
-    EXPECT_NE(swept.err.find("task 0: `/bin/false` ended with exit status 1"), std::string::npos) << swept.err;
+    EXPECT_NE(swept.err.find("task 0: `/bin/sh` ended with exit status 1"), std::string::npos) << swept.err;
     EXPECT_NE(swept.err.find("results.csv"), std::string::npos) << swept.err;
 }
 

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/core/json_parse.h"
+#include "engine/core/number.h"
 #include "engine/core/table.h"
 #include "fluid/scene/scene_inputs.h"
 
@@ -115,8 +115,7 @@ class SweepReader {
     Result<double> number(const Json::Value& value, const std::string& name) const {
         const std::string digits = literal(value);
         double x = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
-        if (!value.isNumeric() || error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(x))
+        if (!value.isNumeric() || !parseNumber(digits, x) || !std::isfinite(x))
             return wrong(value, fmt::format("{} must be a number, but is {}", name, digits.substr(0, 60)));
         return x;
     }

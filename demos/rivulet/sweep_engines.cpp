@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 
 #include "demos/rivulet/cli.h"
@@ -15,6 +14,7 @@
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
 #include "engine/core/message_line.h"
+#include "engine/core/number.h"
 
 namespace rivulet {
 
@@ -58,10 +58,11 @@ Result<size_t> longestArray() {
     const Result<EngineOutput> config = runEngine({"scontrol", "show", "config"}, "slurm-client");
     if (!config) return config.error();
     const size_t at = config->text.find("MaxArraySize");
-    const size_t digits = at == std::string::npos ? at : config->text.find_first_of("0123456789", at);
+    constexpr std::string_view kDigits = "0123456789";
+    const size_t digits = at == std::string::npos ? at : config->text.find_first_of(kDigits, at);
     size_t most = 0;
     if (config->status != 0 || digits == std::string::npos ||
-        std::from_chars(config->text.data() + digits, config->text.data() + config->text.size(), most).ec != std::errc() || most < 1)
+        !parseNumber(config->text.substr(digits, config->text.find_first_not_of(kDigits, digits) - digits), most) || most < 1)
         return failed("`scontrol show config` names no MaxArraySize; check that Slurm's controller runs (sinfo)");
     return most;
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 #include <set>
 
@@ -14,6 +13,7 @@
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
 #include "engine/core/folder.h"
+#include "engine/core/number.h"
 
 namespace rivulet {
 
@@ -141,8 +141,7 @@ std::vector<size_t> SweepFolder::endedTasks() const {
     for (const fs::path& path : entriesOf(file("tasks"))) {
         const std::string name = path.filename().string();
         size_t task = 0;
-        const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), task);
-        if (wrong == std::errc() && end == name.data() + name.size()) tasks.push_back(task);
+        if (parseNumber(name, task)) tasks.push_back(task);
     }
     std::sort(tasks.begin(), tasks.end());
     return tasks;

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 
 #include "engine/core/file.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/json_text.h"
+#include "engine/core/number.h"
 
 namespace rivulet {
 
@@ -31,7 +31,8 @@ class PointReader {
         const Json::Value& value = object_[name];
         double x = 0;
         const auto begin = static_cast<size_t>(std::max<ptrdiff_t>(value.getOffsetStart(), 0));
-        if (!value.isNumeric() || std::from_chars(text_.data() + begin, text_.data() + text_.size(), x).ec != std::errc()) sound_ = false;
+        const auto end = static_cast<size_t>(std::max<ptrdiff_t>(value.getOffsetLimit(), 0));
+        if (!value.isNumeric() || !parseNumber(text_.substr(begin, end - begin), x)) sound_ = false;
         return x;
     }
     std::string word(const char* name) {

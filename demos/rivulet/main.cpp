@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -20,6 +19,7 @@
 #include "engine/core/exception_error.h"
 #include "engine/core/jobs.h"
 #include "engine/core/new_file.h"
+#include "engine/core/number.h"
 #include "engine/core/table.h"
 #include "fluid/scene/scene_file.h"
 
@@ -95,9 +95,8 @@ int reportThrown() noexcept {
 // The value of RIVULET_THREADS: the threads of parallel loops.
 Result<int> threadsOf(std::string_view text) {
     int threads = 0;
-    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), threads);
     constexpr int kMost = 1024;
-    if (wrong == std::errc() && end == text.data() + text.size() && threads >= 1 && threads <= kMost) return threads;
+    if (parseNumber(text, threads) && threads >= 1 && threads <= kMost) return threads;
     return badInput(
         fmt::format("the environment variable RIVULET_THREADS must be a number of threads from 1 to {}, but is '{}'", kMost, text));
 }

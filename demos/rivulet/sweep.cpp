@@ -2,18 +2,22 @@
 #include "demos/rivulet/sweep.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <numeric>
 #include <optional>
 
+#include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/core/json_parse.h"
+#include "engine/core/number.h"
 #include "engine/core/table.h"
+#include "fluid/scene/scene_inputs.h"
 
 namespace rivulet {
 
@@ -25,6 +29,15 @@ constexpr const char* kBrace = "{{";  // in a command: {, which is not the begin
 constexpr const char* kTaskFolder = "{task}";
 constexpr const char* kGrid = "grid";
 constexpr const char* kHypercube = "latin hypercube";
+
+// Whether `word` begins an option: "--out", "--out=DIR".
+bool isOption(const std::string& word, std::string_view name) {
+    return word.starts_with(name) && (word.size() == name.size() || word[name.size()] == '=');
+}
+
+bool hasOption(const std::vector<std::string>& words, std::string_view name) {
+    return std::any_of(words.begin(), words.end(), [name](const std::string& word) { return isOption(word, name); });
+}
 
 // A generator of random bits that gives the same sequence on every platform: SplitMix64 (Steele, Lea and Flood 2014).
 class SweepRandom {
@@ -102,8 +115,7 @@ class SweepReader {
     Result<double> number(const Json::Value& value, const std::string& name) const {
         const std::string digits = literal(value);
         double x = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
-        if (!value.isNumeric() || error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(x))
+        if (!value.isNumeric() || !parseNumber(digits, x) || !std::isfinite(x))
             return wrong(value, fmt::format("{} must be a number, but is {}", name, digits.substr(0, 60)));
         return x;
     }
@@ -142,6 +154,13 @@ class SweepReader {
         return words;
     }
 
+    // The default outputs of `run` in a sweep are in the task's folder. A replay has no statistics.
+    static void addOutputs(std::vector<std::string>& words) {
+        if (!hasOption(words, "--out")) words.insert(words.end(), {"--out", kTaskFolder});
+        if (!hasOption(words, "--stats") && !hasOption(words, "--replay"))
+            words.insert(words.end(), {"--stats", fmt::format("{}/stats.json", kTaskFolder)});
+    }
+
     Status readCommands(const Json::Value& root) {
         const bool one = root.isMember("command"), several = root.isMember("commands");
         if (one == several)
@@ -155,6 +174,7 @@ class SweepReader {
             if (!text.isString()) return wrong(text, "a command must be a text");
             Result<std::vector<std::string>> words = split(text);
             if (!words) return words.error();
+            if (words->front() == "run") addOutputs(*words);
             sweep_.commands.push_back({std::move(*words), placeAt(text)});
         }
         return ok();
@@ -409,16 +429,71 @@ std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command
     return words;
 }
 
-Status checkTasks(const Sweep& sweep) {
+namespace {
+
+// The first word of a command. Error (badInput): neither a verb nor a program that can be started.
+Status checkProgram(const std::string& program, const std::string& place) {
+    if (program.find('/') == std::string::npos) {
+        if (verbs().find(program) != nullptr) return ok();
+        const std::vector<std::string> names = verbs().names();
+        const std::string near = nearestName(program, names);
+        return badInput(fmt::format("{}: '{}' is no verb of rivulet; {}", place, program,
+                                    near.empty() ? fmt::format("a program that is searched in PATH is written /usr/bin/env {}", program)
+                                                 : fmt::format("did you mean '{}'?", near)));
+    }
+    if (program.find(kTaskFolder) != std::string::npos) return ok();  // a command before it makes it
+    std::error_code error;
+    if (!fs::is_regular_file(program, error))
+        return badInput(fmt::format("{}: the program {} does not exist; write its path, or /usr/bin/env NAME", place, program));
+    if (::access(program.c_str(), X_OK) != 0)
+        return badInput(fmt::format("{}: {} is not executable; write its interpreter first, for example /usr/bin/env python3 {}", place,
+                                    program, program));
+    return ok();
+}
+
+// The files and folders that tasks write, by the task. Error (badInput): two tasks write the same one.
+class TaskOutputs {
+  public:
+    Status add(const std::vector<std::string>& words, size_t task, const std::string& place) {
+        for (size_t k = 1; k < words.size(); ++k)
+            for (const char* name : {"--out", "--stats", "--video", "--trace", "--save", "--record", "--json"}) {
+                if (!isOption(words[k], name)) continue;
+                const size_t length = std::string_view(name).size();
+                const std::string path = words[k].size() > length ? words[k].substr(length + 1) : k + 1 < words.size() ? words[k + 1] : "";
+                if (path.find(kTaskFolder) != std::string::npos) continue;
+                const auto [at, added] = tasks_.emplace(fs::path(path).lexically_normal().string(), task);
+                if (added || at->second == task) continue;
+                return badInput(fmt::format("{}: tasks {} and {} both write {} {}; write for example {} {{task}}/{}", place, at->second,
+                                            task, name, path, name, fs::path(path).filename().string()));
+            }
+        return ok();
+    }
+
+  private:
+    std::map<std::string, size_t> tasks_;
+};
+
+}  // namespace
+
+Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
+    std::set<std::string> files;
+    TaskOutputs outputs;
     std::error_code error;
     fs::current_path(sweep.folder, error);
     if (error) return failed(fmt::format("the folder {} cannot be entered: {}", sweep.folder, error.message()));
     for (size_t task = 0; task < sweep.tasks; ++task)
         for (const SweepCommand& command : sweep.commands) {
-            if (command.words.front() != "run") continue;
             std::vector<std::string> words = wordsOf(sweep, command, task, kTaskFolder);
+            if (task == 0 || command.words.front().find('{') != std::string::npos)
+                if (Status sound = checkProgram(words.front(), command.place); !sound) return sound.error();
+            if (words.front().find('/') == std::string::npos)
+                if (Status alone = outputs.add(words, task, command.place); !alone) return alone.error();
+            if (words.front() != "run") continue;
             const auto read = readRun({words.begin() + 1, words.end()});
-            if (read && *read) continue;
+            if (read && *read) {
+                for (const SceneInput& input : inputsOf((*read)->scene)) files.insert(input.path);
+                continue;
+            }
             if (read) return badInput(fmt::format("{}: --help is no command of a sweep; leave it out", command.place));
             const std::string& why = read.error().message;
             if (why.find(kTaskFolder) != std::string::npos) continue;  // a scene that a command before it makes
@@ -427,7 +502,7 @@ Status checkTasks(const Sweep& sweep) {
                 if (why.find(parameter.name + "=") != std::string::npos) place = parameter.place;
             return Error{fmt::format("{}: task {}: {}", place, task, why), read.error().fault};
         }
-    return ok();
+    return files;
 }
 
 }  // namespace rivulet

@@ -7,6 +7,7 @@
 // docs/sweeps.md describes the file.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,7 @@ struct SweepParameter {
 };
 
 struct SweepCommand {
-    std::vector<std::string> words;  // the first is a verb of rivulet, or the path of another program
+    std::vector<std::string> words;  // the first is a verb of rivulet, or the path of another program; `run` with --out and --stats
     std::string place;               // as SweepParameter::place
 };
 
@@ -45,8 +46,9 @@ Result<Sweep> readSweep(std::string_view text, const std::string& file);
 // follow a command of the verb `run`, as --set NAME=VALUE.
 std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command, size_t task, const std::string& taskFolder);
 
-// Checks the arguments and the scene of each `run` of each task as `rivulet run` does; changes the working directory to the sweep's folder.
-// Error: as readRun, with the place of the parameter that the message names, or of the command.
-Status checkTasks(const Sweep& sweep);
+// Checks that the verb or program of each command exists, that no two tasks write the same file, and the arguments and the scene of each
+// `run` as `rivulet run` does; changes the working directory to the sweep's folder. Returns the files that the scenes read. Error: with the
+// place of the parameter that the message names, or of the command.
+Result<std::set<std::string>> checkTasks(const Sweep& sweep);
 
 }  // namespace rivulet

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 
 #include "demos/rivulet/cli.h"
@@ -15,6 +14,7 @@
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
 #include "engine/core/message_line.h"
+#include "engine/core/number.h"
 
 namespace rivulet {
 
@@ -58,12 +58,24 @@ Result<size_t> longestArray() {
     const Result<EngineOutput> config = runEngine({"scontrol", "show", "config"}, "slurm-client");
     if (!config) return config.error();
     const size_t at = config->text.find("MaxArraySize");
-    const size_t digits = at == std::string::npos ? at : config->text.find_first_of("0123456789", at);
+    constexpr std::string_view kDigits = "0123456789";
+    const size_t digits = at == std::string::npos ? at : config->text.find_first_of(kDigits, at);
     size_t most = 0;
     if (config->status != 0 || digits == std::string::npos ||
-        std::from_chars(config->text.data() + digits, config->text.data() + config->text.size(), most).ec != std::errc() || most < 1)
+        !parseNumber(config->text.substr(digits, config->text.find_first_not_of(kDigits, digits) - digits), most) || most < 1)
         return failed("`scontrol show config` names no MaxArraySize; check that Slurm's controller runs (sinfo)");
     return most;
+}
+
+// A file name in an option of a script: quoted, because it may have blanks, and without the symbols that Slurm replaces. Error (badInput):
+// it has characters that Slurm cannot read.
+Result<std::string> slurmName(const std::string& name) {
+    if (name.find_first_of("\"\\\n\r") != std::string::npos)
+        return badInput(fmt::format(
+            "{} has a quotation mark, a backslash or a line break, which Slurm does not accept; choose another --output", printable(name)));
+    std::string escaped;
+    for (const char c : name) escaped += c == '%' ? std::string("%%") : std::string(1, c);
+    return escaped;
 }
 
 // "0-4,7,9-11".
@@ -96,6 +108,8 @@ int sweepWithSlurm(const Sweep& sweep, const SweepFolder& folder, int threads, b
         fmt::print("all {} tasks have ended: {}\n", sweep.tasks, printable(folder.file("results.csv")));
         return kDone;
     }
+    const Result<std::string> logs = slurmName(folder.file("slurm"));
+    if (!logs) return report(logs.error());
     constexpr size_t kDefaultArray = 1001;  // Slurm's default MaxArraySize
     size_t most = kDefaultArray;
     if (!dryRun) {
@@ -116,7 +130,8 @@ int sweepWithSlurm(const Sweep& sweep, const SweepFolder& folder, int threads, b
     const auto number = std::find(words.begin(), words.end(), "--task") + 1;
     *number = "TASK";
     std::string line = shellLine(words);
-    line.replace(line.find(" TASK"), 5, " \"$task\"");
+    constexpr std::string_view kNumber = " --task TASK";
+    line.replace(line.rfind(kNumber), kNumber.size(), " --task \"$task\"");
     const std::string script = fmt::format(
         "#!/bin/bash\n"
         "# An array job: sbatch {0}/slurm.sh. Options of sbatch that are not here come from the environment: SBATCH_PARTITION, ...\n"
@@ -124,13 +139,13 @@ int sweepWithSlurm(const Sweep& sweep, const SweepFolder& folder, int threads, b
         "#SBATCH --array={1}\n"
         "#SBATCH --ntasks=1\n"
         "#SBATCH --cpus-per-task={2}\n"
-        "#SBATCH --output={0}/slurm/%a.txt\n"
+        "#SBATCH --output=\"{6}/%a.txt\"\n"
         "status=0\n"
         "for ((task = SLURM_ARRAY_TASK_ID; task < {3}; task += {4})); do\n"
         "    {5} || status=1\n"
         "done\n"
         "exit $status\n",
-        folder.path(), array, threads, sweep.tasks, stride, line);
+        folder.path(), array, threads, sweep.tasks, stride, line, *logs);
     const std::string name = folder.file("slurm.sh");
     if (Status written = writeFileAtomic(name, script, 0777); !written) return report(written.error());
     if (dryRun) {
@@ -162,7 +177,7 @@ int sweepWithParallel(const Sweep& sweep, const SweepFolder& folder, int jobs, i
                                         .errors = STDERR_FILENO},
                                        "parallel", "parallel");
     if (!status) return report(status.error());
-    if (Status collected = folder.collect(sweep); !collected) return report(collected.error());
+    if (const auto collected = folder.collect(sweep); !collected) return report(collected.error());
     const size_t open = openTasks(sweep, folder).size();
     fmt::print("{}: {} of {} tasks have ended\n", printable(folder.file("results.csv")), sweep.tasks - open, sweep.tasks);
     return open > 0 ? kFailed : kDone;

@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
+#include <set>
 
+#include "demos/rivulet/sweep_origin.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
 #include "engine/core/folder.h"
+#include "engine/core/number.h"
 
 namespace rivulet {
 
@@ -47,7 +49,7 @@ bool sweepGrew(const Sweep& before, const Sweep& now) {
 // Whether a folder that holds this entry, and no sweep.json, is another's: a sweep that was killed at its start leaves the others.
 bool isForeign(const fs::path& entry) {
     const std::string name = entry.filename().string();
-    return name != "tasks" && name != "tasks.txt" && !name.starts_with(".rivulet-");
+    return name != "tasks" && name != "tasks.txt" && name != "origin.json" && !name.starts_with(".rivulet-");
 }
 
 std::string programPath() {
@@ -70,28 +72,63 @@ std::string shellLine(const std::vector<std::string>& words) {
     return line;
 }
 
+Status SweepFolder::writeTasks(const Sweep& sweep, int threads) const {
+    const std::string list = file("tasks.txt");
+    std::string lines;
+    for (size_t task = 0; task < sweep.tasks; ++task) lines += shellLine(taskLine(sweep, *this, task, threads)) + '\n';
+    const Result<std::string> before = readFile(list);
+    return before && *before == lines ? ok() : writeFileAtomic(list, lines);
+}
+
 Status SweepFolder::prepare(const Sweep& sweep, std::string_view text, int threads) const {
-    const std::string kept = file("sweep.json"), list = file("tasks.txt");
-    std::error_code none;
-    if (fs::exists(kept, none)) {
+    const std::string kept = file("sweep.json"), source = file("origin.json");
+    SweepOrigin origin{.folder = sweep.folder, .scenes = {}};
+    bool checked = false;
+    if (isPrepared()) {
         const Result<std::string> before = readFile(kept);
         if (!before) return before.error();
-        if (*before == text && fs::exists(list, none)) return ok();
-        const Result<Sweep> old = readSweep(*before, kept);
-        if (!old || !sweepGrew(*old, sweep))
+        Result<SweepOrigin> made = readOrigin(source);
+        if (!made) return made.error();
+        if (Status same = checkOrigin(*made, sweep.folder, path_); !same) return same;
+        origin.scenes = std::move(made->scenes);
+        checked = *before == text;
+        if (const Result<Sweep> old = readSweep(*before, kept); !checked && (!old || !sweepGrew(*old, sweep)))
             return badInput(
                 fmt::format("{} has changed since its tasks in {} were made, and not only by more tasks at the end; choose another "
                             "--output, or delete the folder",
                             sweep.file, path_));
+        if (checked && made->folder == sweep.folder) return writeTasks(sweep, threads);
     } else if (const std::vector<fs::path> others = entriesOf(path_); std::any_of(others.begin(), others.end(), isForeign)) {
         return badInput(fmt::format("{} exists and is no folder of a sweep; choose another --output", path_));
     }
-    if (Status sound = checkTasks(sweep); !sound) return sound;
+    if (!checked) {
+        const Result<std::set<std::string>> scenes = checkTasks(sweep);
+        if (!scenes) return scenes.error();
+        for (const std::string& name : *scenes) origin.scenes.emplace(originName(name, sweep.folder), "");
+        if (Status hashed = hashScenes(origin); !hashed) return hashed;
+    }
     if (Status made = makeFolder(file("tasks")); !made) return made;
-    std::string lines;
-    for (size_t task = 0; task < sweep.tasks; ++task) lines += shellLine(taskLine(sweep, *this, task, threads)) + '\n';
-    if (Status written = writeFileAtomic(list, lines); !written) return written;
+    if (Status written = writeTasks(sweep, threads); !written) return written;
+    if (Status written = writeOrigin(origin, source); !written) return written;
     return writeFileAtomic(kept, text);
+}
+
+bool SweepFolder::isPrepared() const {
+    std::error_code none;
+    return fs::exists(file("sweep.json"), none);
+}
+
+Result<Sweep> SweepFolder::prepared() const {
+    const std::string name = file("sweep.json");
+    const Result<std::string> text = readFile(name);
+    if (!text) return text.error();
+    Result<Sweep> sweep = readSweep(*text, name);
+    if (!sweep) return sweep;
+    const Result<SweepOrigin> origin = readOrigin(file("origin.json"));
+    if (!origin) return origin.error();
+    sweep->folder = origin->folder;
+    if (Status same = checkOrigin(*origin, sweep->folder, path_); !same) return same.error();
+    return sweep;
 }
 
 bool SweepFolder::hasEnded(size_t task) const {
@@ -104,17 +141,20 @@ std::vector<size_t> SweepFolder::endedTasks() const {
     for (const fs::path& path : entriesOf(file("tasks"))) {
         const std::string name = path.filename().string();
         size_t task = 0;
-        const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), task);
-        if (wrong == std::errc() && end == name.data() + name.size()) tasks.push_back(task);
+        if (parseNumber(name, task)) tasks.push_back(task);
     }
     std::sort(tasks.begin(), tasks.end());
     return tasks;
 }
 
-Descriptor SweepFolder::lock(size_t task, std::optional<Error>& error) const {
+Descriptor SweepFolder::lock(size_t task, std::optional<Error>& error, bool wait) const {
     const std::string name = ended(task) + ".lock";
     Descriptor file = openDescriptor(name, O_RDWR | O_CREAT);
-    if (file.valid() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return file;
+    int locked = -1;
+    do {
+        locked = file.valid() ? ::flock(file.get(), wait ? LOCK_EX : LOCK_EX | LOCK_NB) : -1;
+    } while (file.valid() && locked != 0 && errno == EINTR);
+    if (locked == 0) return file;
     const int why = errno;
     if (!file.valid() || why != EWOULDBLOCK) error = failed(fmt::format("{} cannot be locked: {}", name, reasonOf(why)));
     return {};

@@ -1,10 +1,12 @@
 // The folder of a sweep, which several processes use at a time:
 //
-//     sweep.json      the sweep, as it was given
+//     sweep.json      the sweep, as it was given; tasks read it
+//     origin.json     the folder of the commands, and what the tasks depend on (sweep_origin.h)
 //     tasks.txt       one command line a task
 //     tasks/7         a task that has ended: what its commands wrote, and log.txt, what they printed
 //     tasks/7.part    one that runs, failed or was killed; tasks/7.lock: locked (flock) while it runs
-//     results.csv     the parameters and the numbers of stats.json of each task that has ended
+//     results.csv     the parameters and the numbers of stats.json of each task that has ended; results.lock: locked while it is written,
+//                     results.next: by the process that writes it next
 #pragma once
 
 #include <optional>
@@ -16,6 +18,11 @@
 
 namespace rivulet {
 
+struct TableSize {
+    size_t rows = 0;     // without the header
+    size_t numbers = 0;  // columns that come from stats.json
+};
+
 class SweepFolder {
   public:
     explicit SweepFolder(std::string path) : path_(std::move(path)) {}  // absolute
@@ -25,20 +32,32 @@ class SweepFolder {
     std::string ended(size_t task) const { return file("tasks/" + std::to_string(task)); }
     std::string part(size_t task) const { return ended(task) + ".part"; }
 
-    // Writes sweep.json and tasks.txt, unless they are there. `threads`: as SweepOptions::threads. Error (badInput): the folder is that of
-    // another sweep, unless `sweep` has the same tasks and then more; as checkTasks. (failed): not writable.
+    // Writes sweep.json, origin.json and tasks.txt, unless they are there with the same content. `text`: the content of sweep.file;
+    // `threads`: of each task. Error (badInput): the folder is that of another sweep, unless `sweep` has the same tasks and then more; as
+    // checkOrigin and checkTasks. (failed): not writable.
     Status prepare(const Sweep& sweep, std::string_view text, int threads) const;
+
+    bool isPrepared() const;
+    // The sweep that was prepared. Error: as readSweep and checkOrigin.
+    Result<Sweep> prepared() const;
 
     bool hasEnded(size_t task) const;
     std::vector<size_t> endedTasks() const;  // in order
-    // Locks a task. Not valid: another process has locked it, or `error` says why it cannot be locked.
-    Descriptor lock(size_t task, std::optional<Error>& error) const;
+    // Locks a task; `wait`: until another process, and what it started, has released it. Not valid: another process has locked it, or
+    // `error` gives the reason.
+    Descriptor lock(size_t task, std::optional<Error>& error, bool wait = false) const;
 
     // Adds the tasks that have ended to results.csv and removes those whose folder is gone; `again` is read again. The bytes depend on
-    // nothing but the tasks. Error (failed): not writable.
-    Status collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt) const;
+    // nothing but the tasks; `next` is closed before the tasks are listed. Returns the size of the table. Error (failed): not writable.
+    Result<TableSize> collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt, Descriptor* next = nullptr) const;
+    // The same for a task that has just ended, unless another process is about to do it: the table is read and written once for all tasks
+    // that end meanwhile. When the last process has ended, it is complete.
+    Status collectSoon(const Sweep& sweep, size_t task) const;
+    // The tasks that end leave the table to this process, which collects after it has released the lock. Not valid: another process has it.
+    Descriptor takeTable() const;
 
   private:
+    Status writeTasks(const Sweep& sweep, int threads) const;
     std::string path_;
 };
 

@@ -18,6 +18,7 @@ namespace {
 // The program of a process that has just been forked. Only calls that are safe in a handler of signals.
 [[noreturn]] void becomeProgram(const NewProcess& process, const char* program, char* const* words, pid_t parent) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != parent) _exit(127);
+    if (process.group && ::setpgid(0, 0) != 0) _exit(127);
     sigset_t none;
     sigemptyset(&none);
     (void)::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -47,6 +48,7 @@ Result<pid_t> startProcess(const NewProcess& process) {
     const pid_t parent = ::getpid(), child = ::fork();
     if (child == 0) becomeProgram(process, other ? words.front().c_str() : "/proc/self/exe", pointers.data(), parent);
     if (child < 0) return failed(fmt::format("no process can be started: {}", reasonOf(errno)));
+    if (process.group) (void)::setpgid(child, child);  // here too: a signal may be sent to the group before the child has made it
     return child;
 }
 

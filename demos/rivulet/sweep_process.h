@@ -16,17 +16,18 @@ struct NewProcess {
     int input = -1;                  // a descriptor for its stdin; -1: /dev/null
     int output = -1;                 // a descriptor for its stdout and stderr; -1: /dev/null
     int errors = -1;                 // for its stderr alone; -1: as `output`
+    bool group = false;              // in a process group of its own, which a signal reaches with all that it starts
     int kept = -1;                   // a descriptor that stays open in it and in what it starts: a lock
 };
 
-// Starts a program, which the kernel kills (SIGKILL) when the calling thread ends: it does not outlive a sweep that was killed. Error
-// (failed): no process can be made. A program that cannot be started ends with status 127.
+// Starts a program, which the kernel kills (SIGKILL) when the calling thread ends: it does not outlive a sweep that was killed. Programs
+// that it starts itself do. Error (failed): no process can be made. A program that cannot be started ends with status 127.
 Result<pid_t> startProcess(const NewProcess& process);
 
 // The exit status as a shell gives it: 128 + the signal that ended the process.
 int exitStatusOf(int waited);
 
-// The last line of a text that is not empty: what a program said before it ended. At most 300 bytes.
+// The last line of a text that is not empty: the last message of a program that has ended. At most 300 bytes.
 std::string lastLine(const std::string& text);
 
 }  // namespace rivulet

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
@@ -30,7 +31,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the commands of a task may use: loops of rivulet, llvmpipe and PoCL each read their own variable. A value of the user stays.
+// What the commands of a task may use: loops of rivulet, llvmpipe and PoCL each read their own variable. A value of the
+// user stays for the last two; --threads sets the first.
 void setThreads(int threads) {
     const std::string text = std::to_string(threads);
     (void)::setenv("RIVULET_THREADS", text.c_str(), 1);
@@ -81,11 +83,12 @@ int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int
     Descriptor lock;
     if (!folder.hasEnded(task)) {
         lock = folder.lock(task, error);
-        if (error) return report(*error);
-        if (!lock.valid()) {
-            fmt::print("task {} is run by another process\n", task);
-            return kDone;
+        if (!lock.valid() && !error) {
+            fmt::print("task {} is run by another process; waiting for its end\n", task);
+            flushOutput();
+            lock = folder.lock(task, error, true);
         }
+        if (error) return report(*error);
     }
     if (folder.hasEnded(task)) {  // before, or while it was being locked
         fmt::print("task {} has ended before\n", task);
@@ -99,7 +102,7 @@ int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int
     fs::rename(part, name, renamed);
     if (renamed) return report(failed(fmt::format("{} cannot be renamed to {}: {}", part, name, renamed.message())));
     (void)::unlink((name + ".lock").c_str());
-    if (Status collected = folder.collect(sweep, task); !collected) return report(collected.error());
+    if (Status collected = folder.collectSoon(sweep, task); !collected) return report(collected.error());
     return kDone;
 }
 
@@ -131,9 +134,11 @@ class SweepJobs {
         (void)::sigprocmask(SIG_BLOCK, &ofChildren, nullptr);  // for sigtimedwait; startProcess unblocks it in the child
         Progress progress("sweep");
         bool stopped = false;
+        size_t inTable = ended_;
+        auto collected = std::chrono::steady_clock::now();
         while (!running_.empty() || ((!waiting_.empty() || !elsewhere_.empty()) && !graceful.interrupted())) {
             if (graceful.interrupted() && !stopped) {
-                for (const auto& [child, task] : running_) ::kill(child, SIGTERM);
+                for (const auto& [child, task] : running_) ::kill(-child, SIGTERM);
                 stopped = true;
             }
             while (!stopped && running_.size() < jobs_ && next())
@@ -143,7 +148,12 @@ class SweepJobs {
                                       failures_.empty() ? "" : fmt::format(", {} failed", failures_.size())));
             const timespec wait{0, 200'000'000};
             (void)::sigtimedwait(&ofChildren, nullptr, &wait);
-            reap(stopped);
+            reap(graceful);
+            constexpr std::chrono::seconds kBetweenTables(2);
+            if (ended_ == inTable || std::chrono::steady_clock::now() - collected < kBetweenTables) continue;
+            (void)folder_.collect(sweep_);  // an error is reported at the end
+            inTable = ended_;
+            collected = std::chrono::steady_clock::now();
         }
         return ok();
     }
@@ -170,21 +180,28 @@ class SweepJobs {
     Status start() {
         const size_t task = waiting_.front();
         waiting_.pop_front();
+        if (std::optional<Error> error; !folder_.hasEnded(task) && !folder_.lock(task, error).valid() && !error) {
+            elsewhere_.push_back(task);
+            return ok();
+        }
         const int said = ::memfd_create("messages of a task", MFD_CLOEXEC);
         if (said < 0) return failed(fmt::format("no memory for the messages of a task: {}", reasonOf(errno)));
         std::vector<std::string> words = taskLine(sweep_, folder_, task, threads_);
         words.erase(words.begin());
         Descriptor messages(said);
-        const Result<pid_t> child = startProcess({.words = words, .errors = messages.get()});
+        const Result<pid_t> child = startProcess({.words = words, .errors = messages.get(), .group = true});
         if (!child) return child.error();
         messages_.emplace(*child, std::move(messages));
         running_.emplace(*child, task);
         return ok();
     }
 
-    void reap(bool stopped) {
-        int waited = 0;
-        for (pid_t child = 0; (child = ::waitpid(-1, &waited, WNOHANG)) > 0;) {
+    void reap(const Graceful& graceful) {
+        for (siginfo_t next{}; ::waitid(P_ALL, 0, &next, WEXITED | WNOHANG | WNOWAIT) == 0 && next.si_pid != 0; next = {}) {
+            const pid_t child = next.si_pid;
+            if (graceful.interrupted()) ::kill(-child, SIGKILL);  // what is left of the task, before its number is free for another group
+            int waited = 0;
+            (void)::waitpid(child, &waited, 0);
             const auto at = running_.find(child);
             if (at == running_.end()) continue;
             const size_t task = at->second;
@@ -196,7 +213,7 @@ class SweepJobs {
                 ++ended_;
             else if (status == 0)
                 elsewhere_.push_back(task);
-            else if (!stopped)
+            else if (!graceful.interrupted())
                 failures_.emplace(task, messageOf(messages, task, status));
         }
     }
@@ -227,8 +244,10 @@ class SweepJobs {
 int runSweepTasks(const Sweep& sweep, const SweepFolder& folder, int jobs, int threads) {
     const Graceful graceful;
     SweepJobs all(sweep, folder, jobs, threads);
+    if (const auto before = folder.collect(sweep); !before) return report(before.error());  // without the tasks whose folder is gone
+    Descriptor table = folder.takeTable();
     if (Status run = all.run(graceful); !run) return report(run.error());
-    if (Status collected = folder.collect(sweep); !collected) return report(collected.error());
+    (void)table.close();
     constexpr size_t kShown = 10;
     size_t shown = 0;
     for (const auto& [task, why] : all.failures())
@@ -236,9 +255,13 @@ int runSweepTasks(const Sweep& sweep, const SweepFolder& folder, int jobs, int t
     const size_t failures = all.failures().size();
     if (failures > kShown)
         (void)report(failed(fmt::format("{} more tasks failed; each has a log in {}", failures - kShown, folder.file("tasks"))));
+    const Result<TableSize> size = folder.collect(sweep);
+    if (!size) return report(size.error());
     fmt::print("{}: {} of {} tasks have ended{}{}\n", printable(folder.file("results.csv")), all.ended(), sweep.tasks,
                all.before() > 0 ? fmt::format(", {} of them before", all.before()) : "",
                failures > 0 ? fmt::format(", {} failed", failures) : "");
+    if (size->rows > 0 && size->numbers == 0)
+        fmt::print("no task has left a stats.json in its folder, {{task}}: the table has the parameters only\n");
     if (graceful.status() != 0) return graceful.status();
     return failures > 0 ? kFailed : kDone;
 }

@@ -124,6 +124,8 @@ class ResultTable {
         lines_[task] = lineOf(task, row);
     }
 
+    TableSize size() const { return {.rows = lines_.size(), .numbers = columns_.size()}; }
+
     std::string text() const {
         std::string csv = fixed_;
         for (const std::string& name : columns_) csv += ',' + tableCell(name);
@@ -164,7 +166,22 @@ Result<std::vector<std::pair<std::string, std::string>>> numbersOf(const std::st
     return numbers;
 }
 
-Status SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again) const {
+Descriptor SweepFolder::takeTable() const {
+    Descriptor next = openDescriptor(file("results.next"), O_RDWR | O_CREAT);
+    if (next.valid() && ::flock(next.get(), LOCK_EX | LOCK_NB) == 0) return next;
+    return {};
+}
+
+// Two locks: one process collects, and one waits for it. A task that ends while another waits is in the table of that one, which reads the
+// folder after it has released results.next.
+Status SweepFolder::collectSoon(const Sweep& sweep, size_t task) const {
+    Descriptor next = takeTable();
+    if (!next.valid()) return ok();
+    const Result<TableSize> collected = collect(sweep, task, &next);
+    return collected ? ok() : Status(collected.error());
+}
+
+Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again, Descriptor* next) const {
     const std::string name = file("results.csv"), lockName = file("results.lock");
     const Descriptor lock = openDescriptor(lockName, O_RDWR | O_CREAT);
     int locked = -1;
@@ -172,6 +189,7 @@ Status SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again) con
         locked = lock.valid() ? ::flock(lock.get(), LOCK_EX) : -1;
     } while (lock.valid() && locked != 0 && errno == EINTR);
     if (locked != 0) return failed(fmt::format("{} cannot be locked: {}", lockName, reasonOf(errno)));
+    if (next != nullptr) (void)next->close();
     std::set<size_t> all;
     for (const size_t task : endedTasks())
         if (task < sweep.tasks) all.insert(task);
@@ -190,7 +208,9 @@ Status SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again) con
         table.add(task, *numbers);
     }
     const std::string now = table.text();
-    return now == before ? ok() : writeFileAtomic(name, now, 0666, Sync::none);
+    if (now != before)
+        if (Status written = writeFileAtomic(name, now, 0666, Sync::none); !written) return written.error();
+    return table.size();
 }
 
 }  // namespace rivulet

@@ -8,7 +8,9 @@
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "demos/rivulet/sweep_folder.h"
 #include "engine/app/capture.h"
+#include "engine/core/file.h"
 #include "engine/core/folder.h"
 #include "engine/core/message_line.h"
 #include "engine/scene/load_image.h"
@@ -19,52 +21,85 @@ namespace rivulet {
 
 namespace {
 
-// The number in "dam_break_0042.png"; empty: another name.
-std::optional<int> frameNumberOf(const std::filesystem::path& path) {
+struct FrameName {
+    std::string prefix;  // "dam_break"
+    int number = 0;
+};
+
+// The parts of "dam_break_0042.png"; empty: another name.
+std::optional<FrameName> frameNameOf(const std::filesystem::path& path) {
     const std::string stem = path.stem().string();
     const size_t line = stem.rfind('_');
     if (path.extension() != ".png" || line == std::string::npos || stem.size() - line - 1 < 4 || stem.size() - line - 1 > 8) return {};
-    int number = 0;
+    FrameName name{stem.substr(0, line), 0};
     for (const char c : stem.substr(line + 1)) {
         if (c < '0' || c > '9') return {};
-        number = 10 * number + (c - '0');
+        name.number = 10 * name.number + (c - '0');
     }
-    return number;
+    return name;
 }
 
-// The images of a folder by their frames, added to `images`. Error (badInput): a frame has two images.
-Status addImages(const std::filesystem::path& folder, std::map<int, std::string>& images) {
+struct FrameImages {
+    std::string prefix;                // of all names
+    std::map<int, std::string> files;  // by frame
+};
+
+// Adds the images of a folder. Error (badInput): a frame has two images, or the names begin differently: images of different scenes.
+Status addImages(const std::filesystem::path& folder, FrameImages& images) {
     for (const std::filesystem::path& path : entriesOf(folder)) {
-        const std::optional<int> frame = frameNumberOf(path);
-        if (!frame) continue;
-        const auto [at, added] = images.emplace(*frame, path.string());
+        const std::optional<FrameName> name = frameNameOf(path);
+        if (!name) continue;
+        if (images.files.empty()) images.prefix = name->prefix;
+        if (name->prefix != images.prefix)
+            return badInput(fmt::format("{} and {} are images of different scenes; join those of each scene separately",
+                                        images.files.begin()->second, path.string()));
+        const auto [at, added] = images.files.emplace(name->number, path.string());
         if (!added)
-            return badInput(fmt::format("{} and {} are both frame {}; leave one of the folders out", at->second, path.string(), *frame));
+            return badInput(
+                fmt::format("{} and {} are both frame {}; leave one of the folders out", at->second, path.string(), name->number));
     }
+    return ok();
+}
+
+// Error (badInput): `folder` is that of a sweep, and a task has not ended, so that the video would lack its frames.
+Status checkEnded(const std::string& folder) {
+    const std::string name = folder + "/sweep.json";
+    std::error_code error;
+    if (!std::filesystem::exists(name, error)) return ok();
+    const Result<std::string> text = readFile(name);
+    if (!text) return text.error();
+    const Result<Sweep> sweep = readSweep(*text, name);
+    if (!sweep) return sweep.error();
+    const SweepFolder tasks(folder);
+    for (size_t task = 0; task < sweep->tasks; ++task)
+        if (!tasks.hasEnded(task))
+            return badInput(
+                fmt::format("task {} of {} in {} has not ended; run the sweep again until all have", task, sweep->tasks, folder));
     return ok();
 }
 
 // The images of all folders; the folder of a sweep stands for those of its tasks. Error (badInput): no folder, no image, a missing frame.
 Result<std::map<int, std::string>> imagesOf(const std::vector<std::string>& folders) {
-    std::map<int, std::string> images;
+    FrameImages images;
     for (const std::string& folder : folders) {
         std::error_code error;
         if (!std::filesystem::is_directory(folder, error))
             return badInput(fmt::format("{} is no folder; name the folders of the images", folder));
+        if (Status ended = checkEnded(folder); !ended) return ended.error();
         if (Status added = addImages(folder, images); !added) return added.error();
         for (const std::filesystem::path& task : entriesOf(std::filesystem::path(folder) / "tasks"))
             if (task.extension().empty())  // it has ended
                 if (Status added = addImages(task, images); !added) return added.error();
     }
-    if (images.empty())
+    if (images.files.empty())
         return badInput(fmt::format("no image of a frame (NAME_0000.png) is in {}; draw them with run --images", fmt::join(folders, ", ")));
-    int next = images.begin()->first;
-    for (const auto& [frame, path] : images) {
+    int next = images.files.begin()->first;
+    for (const auto& [frame, path] : images.files) {
         if (frame != next)
             return badInput(fmt::format("the image of frame {} is missing; draw it, or name the folder that it is in", next));
         ++next;
     }
-    return images;
+    return std::move(images.files);
 }
 
 Status joinImages(const std::map<int, std::string>& images, const std::string& file, const Graceful& graceful) {

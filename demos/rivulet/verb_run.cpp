@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -8,6 +7,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/outputs.h"
 #include "demos/rivulet/run_options.h"
+#include "engine/core/number.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/renderers.h"
 #include "fluid/scene/scene_inputs.h"
@@ -29,8 +29,7 @@ bool hasDisplay() {
 // The frame number at the time `text`, s, of --still.
 Result<int> frameAt(const std::string& text, const SceneFile& scene) {
     double at = -1;
-    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), at);
-    if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0))
+    if (!parseNumber(text, at) || !(at >= 0))
         return badInput(fmt::format("--still must be a time in seconds, 0 or more, but is '{}'", text));
     return framesOf(at, scene, fmt::format("--still {}", text));
 }
@@ -40,9 +39,7 @@ Status readFrames(const std::string& text, RunOptions& options) {
     const size_t colon = text.find(':');
     const auto number = [](std::string_view digits) -> std::optional<int> {
         int value = -1;
-        const auto [end, wrong] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        return wrong == std::errc() && end == digits.data() + digits.size() && value >= 0 && value <= kMostFrames ? std::optional(value)
-                                                                                                                  : std::nullopt;
+        return parseNumber(digits, value) && value >= 0 && value <= kMostFrames ? std::optional(value) : std::nullopt;
     };
     if (colon != std::string::npos) {
         options.first = number(std::string_view(text).substr(0, colon));

@@ -13,7 +13,8 @@ namespace rivulet {
 
 namespace {
 
-constexpr int kMostThreads = 1024;  // and jobs
+constexpr int kMostThreads = 1024;              // and jobs
+constexpr size_t kLargest = size_t{64} << 20U;  // of SWEEP.json, bytes
 
 std::string absolutePath(const std::string& path) {
     std::error_code error;
@@ -46,17 +47,19 @@ int sweepVerb(const Arguments& arguments) {
     if (task && (dryRun || !engine.empty()))
         return report(badInput(fmt::format("--task cannot be used with {}; leave one of them out", dryRun ? "--dry-run" : "--with")));
     file = absolutePath(file);
-    constexpr size_t kLargest = size_t{64} << 20U;
-    const Result<std::string> text = readFile(file, kLargest);
-    if (!text) return report(text.error());
-    const Result<Sweep> sweep = readSweep(*text, file);
-    if (!sweep) return report(sweep.error());
-    if (task && static_cast<size_t>(*task) >= sweep->tasks)
-        return report(badInput(fmt::format("--task {}: {} has {} tasks, the last is {}", *task, file, sweep->tasks, sweep->tasks - 1)));
     if (output.empty()) output = std::filesystem::path(file).stem().string();
     const SweepFolder folder(absolutePath(output));
     const int each = threads.value_or(1), many = jobs.value_or(std::max(allowedProcessors() / each, 1));
-    if (Status prepared = folder.prepare(*sweep, *text, each); !prepared) return report(prepared.error());
+    const bool prepared = task && folder.isPrepared();  // tasks do not depend on SWEEP.json, which may change while they run
+    const Result<std::string> text = prepared ? Result<std::string>(std::string()) : readFile(file, kLargest);
+    if (!text) return report(text.error());
+    const Result<Sweep> sweep = prepared ? folder.prepared() : readSweep(*text, file);
+    if (!sweep) return report(sweep.error());
+    if (task && static_cast<size_t>(*task) >= sweep->tasks)
+        return report(
+            badInput(fmt::format("--task {}: {} has {} tasks, the last is {}", *task, sweep->file, sweep->tasks, sweep->tasks - 1)));
+    if (!prepared)
+        if (Status made = folder.prepare(*sweep, *text, each); !made) return report(made.error());
     if (task) return runSweepTask(*sweep, folder, static_cast<size_t>(*task), each);
     if (engine == "slurm") return sweepWithSlurm(*sweep, folder, each, dryRun);
     if (dryRun) {

@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
-#include <locale>
-#include <sstream>
-#include <type_traits>
 
+#include "engine/core/number.h"
 #include "engine/core/table.h"
 
 namespace rivulet {
@@ -21,23 +18,6 @@ std::string_view trimmed(std::string_view text) {
     const size_t first = text.find_first_not_of(kSpace);
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-// from_chars: no locale, the nearest representable number, and nothing may follow it. LLVM's library has it for floats from version 20 on.
-template <class T>
-bool parseNumber(std::string_view text, T& v) {
-#if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 200000
-    if constexpr (std::is_floating_point_v<T>) {
-        if (text.find_first_of("+xX \t") == 0 || text.find_first_of("xX") != std::string_view::npos) return false;
-        std::istringstream stream{std::string(text)};
-        stream.imbue(std::locale::classic());
-        return stream >> v && stream.peek() == std::istringstream::traits_type::eof();
-    } else
-#endif
-    {
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-        return error == std::errc{} && end == text.data() + text.size();
-    }
 }
 
 // "between 1 and 64 m", "at least 0"; ParamInfo's own range if the Param sets none.

@@ -53,6 +53,17 @@ with tempfile.TemporaryDirectory() as folder:
     assert np.array_equal(table["speed"], [1.5, 1.5, 2.5, 2.5, 3.5, 3.5]) and table["b"][4] == "x,y"
     assert [name for name in table if sweep.is_time(name)] == ["time.wallSeconds"]
     assert "none.json cannot be read" in str(refusal(ValueError, lambda: sweep.prepare("none.json", program=program)))
+    assert "pip does not" in str(refusal(FileNotFoundError, lambda: sweep.prepare("s.json", program="/nowhere/rivulet")))
+
+    # A worker without the shared folder: its task ends there, and nothing appears here.
+    class Elsewhere(Threads):
+        def map(self, function, lines, pure):
+            return [self.pool.submit(function, ["/bin/true"]) for line in lines]
+
+    sweep._SHARED_SECONDS = 1.0
+    error = refusal(sweep.TaskError, lambda: sweep.run("s.json", Elsewhere(), "apart", program=program))
+    assert len(error.failures) == 6 and "use a folder that all workers share" in str(error), error
+    assert "no task of apart has ended" in str(refusal(ValueError, lambda: sweep.results("apart")))
     path, lines = sweep.prepare("s.json", "other", program=program, threads=2)
     assert path == pathlib.Path("other").absolute() and len(lines) == 6 and lines[5][-4:] == ["--task", "5", "--threads", "2"], lines
 print("sweeps from Python: in order")

@@ -49,6 +49,10 @@ TEST(ProgramPieces, JoinToTheVideoOfASingleRunBitForBit) {
         EXPECT_EQ(joined.out, "joined.mp4, frames 0 to 8\n");
         EXPECT_GT(bytesOf(scratch, "whole.mp4").size(), 1000U);
         EXPECT_TRUE(bytesOf(scratch, "joined.mp4") == bytesOf(scratch, "whole.mp4")) << c.scene << ", " << c.renderer;
+        // The last piece is missing: a shorter video is not made.
+        std::filesystem::rename(scratch.path() / "pieces/tasks/3", scratch.path() / "pieces/tasks/3.part");
+        expectRefusal(runProgram({"join", "pieces", "--video", "short.mp4"}, within(scratch)), 2, "task 3 of 4 in pieces has not ended");
+        EXPECT_FALSE(std::filesystem::exists(scratch.path() / "short.mp4"));
     }
 }
 
@@ -78,6 +82,9 @@ TEST(ProgramPieces, ErrorsNameTheirCause) {
     expectRefusal(runProgram({"join", "a", "b"}, within(scratch)), 2, "the image of frame 2 is missing");
     expectRefusal(runProgram({"join", "a", "b", "c"}, within(scratch)), 2, "has 16x16 pixels, but the images before it 32x32");
     expectRefusal(runProgram({"join", "a", "a"}, within(scratch)), 2, "are both frame");
+    std::filesystem::create_directory(scratch.path() / "d");
+    std::filesystem::copy_file(scratch.path() / "c/small_0002.png", scratch.path() / "d/other_0002.png");
+    expectRefusal(runProgram({"join", "a", "d", "b"}, within(scratch)), 2, "are images of different scenes");
     expectRefusal(runProgram({"join", "out"}, within(scratch)), 2, "no image of a frame");
     expectRefusal(runProgram({"join", "nowhere"}, within(scratch)), 2, "nowhere is no folder");
     expectRefusal(runProgram({"join"}, within(scratch)), 2, "name a folder of images");

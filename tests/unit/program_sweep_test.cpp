@@ -139,6 +139,21 @@ TEST(ProgramSweep, AnArrayThatIsTooLongForSlurmSharesItsTasks) {
     EXPECT_EQ(rows[2], (std::vector<std::string>{"1402", "1402"}));
 }
 
+// Slurm splits its options at blanks and replaces symbols that begin with %.
+TEST(ProgramSweep, SlurmsScriptQuotesItsFolder) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "a TASK 9%", "--with", "slurm", "--dry-run"}, within(scratch)).code, 0);
+    const std::string script = textAt(scratch, "a TASK 9%/slurm.sh");
+    EXPECT_NE(script.find("#SBATCH --output=\"" + scratch.path().string() + "/a TASK 9%%/slurm/%a.txt\"\n"), std::string::npos) << script;
+    RunOptions index = within(scratch);
+    index.environment = {{"SLURM_ARRAY_TASK_ID", "1"}};
+    ASSERT_EQ(runCommand({"bash", "a TASK 9%/slurm.sh"}, index).code, 0);
+    EXPECT_TRUE(fs::exists(scratch.path() / "a TASK 9%/tasks/1"));
+    expectRefusal(runProgram({"sweep", "s.json", "--output", "a\"b", "--with", "slurm", "--dry-run"}, within(scratch)), 2,
+                  "choose another --output");
+}
+
 // Each task leaves the number of its process: one that is run again has another.
 const std::string kSlowSweep =
     R"x({"command": "/bin/sh -c 'echo {k} $$ >{task}/process; for k in 1 2 3 4 5 6 7 8; do echo >>{task}/beats; sleep 0.05; done'",
@@ -154,7 +169,8 @@ std::map<std::string, std::string> processesOf(const Scratch& scratch) {
 
 uintmax_t beatsOf(const Scratch& scratch) {
     uintmax_t beats = 0;
-    for (const auto& entry : fs::directory_iterator(scratch.path() / "s/tasks")) {
+    std::error_code missing;
+    for (const auto& entry : fs::directory_iterator(scratch.path() / "s/tasks", missing)) {
         std::error_code none;
         const uintmax_t bytes = fs::file_size(entry.path() / "beats", none);
         if (!none) beats += bytes;
@@ -206,7 +222,7 @@ TEST(ProgramSweep, TwoProcessesDoATaskOnce) {
     };
     EXPECT_EQ(runProgram({"sweep", "s.json", "--task", "3"}, first).code, 0);
     EXPECT_EQ(second.code, 0) << second.err;
-    EXPECT_EQ(second.out, "task 3 is run by another process\n");
+    EXPECT_EQ(second.out, "task 3 is run by another process; waiting for its end\ntask 3 has ended before\n");
     EXPECT_EQ(textAt(scratch, "s/tasks/3/beats").size(), 8U);
     EXPECT_EQ(runProgram({"sweep", "s.json", "--task", "3"}, within(scratch)).out, "task 3 has ended before\n");
     // Two sweeps of the same folder share the tasks.
@@ -238,8 +254,77 @@ TEST(ProgramSweep, AFailedTaskIsReportedAndTriedAgain) {
     scratch.file("go", "go");
     EXPECT_EQ(runProgram({"sweep", "s.json"}, within(scratch)).code, 0);
     EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 4U);
-    scratch.file("missing.json", R"({"command": "/nowhere/program"})");
+    scratch.file("missing.json", R"({"command": "/usr/bin/env nowhere.program"})");
     expectRefusal(runProgram({"sweep", "missing.json", "--task", "0"}, within(scratch)), 1, "ended with exit status 127");
+}
+
+// A script that starts a program: the signal reaches both, and an interrupted task has not failed. The signal is sent to the group, as a
+// terminal does.
+TEST(ProgramSweep, CtrlCEndsAllThatATaskStarted) {
+    const Scratch scratch;
+    scratch.file("beat.sh", "while true; do echo >>\"$1/beats\"; sleep 0.02; done\n");
+    scratch.file("s.json", R"x({"command": "/bin/bash -c '/bin/bash beat.sh {task} & wait' {k}", "parameters": {"k": [1, 2]}})x");
+    RunOptions options = within(scratch);
+    options.before = [] { (void)::setpgid(0, 0); };
+    bool sent = false;
+    options.whileRunning = [&](pid_t sweep) {
+        if (sent || beatsOf(scratch) < 4) return 0;
+        sent = true;
+        ::kill(-sweep, SIGINT);
+        return 0;
+    };
+    const Outcome stopped = runProgram({"sweep", "s.json", "--jobs", "2"}, options);
+    EXPECT_EQ(stopped.code, 128 + SIGINT);
+    EXPECT_EQ(stopped.err, "");
+    EXPECT_NE(stopped.out.find("0 of 2 tasks have ended\n"), std::string::npos) << stopped.out;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const uintmax_t beats = beatsOf(scratch);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_EQ(beatsOf(scratch), beats);
+}
+
+// A process that outlives its killed task holds the task's lock: the task waits for it and is then run, so that status 0 means that it
+// ended.
+TEST(ProgramSweep, ATaskThatIsHeldElsewhereIsDoneBeforeItReportsSuccess) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    Outcome task;
+    RunOptions options = within(scratch);
+    options.whileRunning = [&](pid_t) {
+        if (task.code < 0 && fs::exists(scratch.path() / "held")) task = runProgram({"sweep", "s.json", "--task", "1"}, within(scratch));
+        return 0;
+    };
+    ASSERT_EQ(runCommand({"/usr/bin/flock", "s/tasks/1.lock", "/bin/sh", "-c", "touch held; sleep 0.5"}, options).code, 0);
+    EXPECT_EQ(task.code, 0) << task.err;
+    EXPECT_TRUE(fs::exists(scratch.path() / "s/tasks/1"));
+}
+
+// The table is read and written once for all tasks that end while it is busy, and lacks none at the end.
+TEST(ProgramSweep, TasksThatEndTogetherAreAllInTheTable) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": {"from": 1, "to": 40, "count": 40}}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    ASSERT_EQ(runCommand({"/bin/sh", "-c", "while read -r line; do sh -c \"$line\" & done <s/tasks.txt; wait"}, within(scratch)).code, 0);
+    EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 41U);
+    // Another process has the table: tasks leave it to that one.
+    const std::string before = textAt(scratch, "s/results.csv");
+    for (const char* task : {"7", "8"}) fs::remove_all(scratch.path() / "s/tasks" / task);
+    ASSERT_EQ(runCommand({"/usr/bin/flock", "s/results.next", RIVULET_PROGRAM, "sweep", "s.json", "--task", "7"}, within(scratch)).code, 0);
+    EXPECT_EQ(textAt(scratch, "s/results.csv"), before) << "it was not written without task 8";
+    ASSERT_EQ(runProgram({"sweep", "s.json"}, within(scratch)).code, 0);
+    EXPECT_EQ(textAt(scratch, "s/results.csv"), before);
+}
+
+// A table that cannot be written does not hide which tasks failed.
+TEST(ProgramSweep, AFailedTaskIsReportedWithoutTheTable) {
+    const Scratch scratch;
+    scratch.file("s.json",
+                 R"({"command": "/bin/sh -c 'rm s/results.csv; mkdir -p s/results.csv/in_the_way; exit {k}'", "parameters": {"k": [1]}})");
+    const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
+    EXPECT_EQ(swept.code, 1);
+    EXPECT_NE(swept.err.find("task 0: `/bin/sh` ended with exit status 1"), std::string::npos) << swept.err;
+    EXPECT_NE(swept.err.find("results.csv"), std::string::npos) << swept.err;
 }
 
 // McKay, Beckman and Conover 1979: each of n equal parts of each range is used once. The same seed gives the same tasks everywhere.
@@ -301,6 +386,12 @@ TEST(ProgramSweep, ErrorsNamePlaceAndRemedyAndLeaveNothing) {
     refused(R"({"parameters": {}})", "`command` is missing");
     refused(R"({"command": "run small.json --frames {f}", "parameters": {"f": {"from": 0, "to": 3, "pieces": 4}}})",
             "cannot be cut into 4 pieces");
+    refused(R"({"command": "rnu small.json"})", "s.json:1:13: 'rnu' is no verb of rivulet; a program that is searched in PATH");
+    refused(R"({"command": "python3 x.py {n}", "parameters": {"n": [1]}})", "is written /usr/bin/env python3");
+    refused(R"({"command": "/no/such/prog"})", "the program /no/such/prog does not exist");
+    refused(R"({"command": "./small.json"})", "./small.json is not executable");
+    refused(R"({"command": "run small.json --out o", "parameters": {"fluid.viscosity": [1, 2]}})", "tasks 0 and 1 both write --out o;");
+    refused(R"({"command": "run small.json --stats=a{n}", "parameters": {"n": [1, 2, 1]}})", "tasks 0 and 2 both write --stats a1");
     refused("{", "s.json:1:");
     expectRefusal(runProgram({"sweep", "none.json"}, within(scratch)), 2, "none.json cannot be read");
     scratch.file("s.json", R"({"command": "/bin/true"})");
@@ -327,6 +418,88 @@ TEST(ProgramSweep, AChangedSweepIsRefusedUnlessItGrew) {
     EXPECT_NE(grown.out.find("3 of 3 tasks have ended, 2 of them before"), std::string::npos) << grown.out;
     EXPECT_EQ(textAt(scratch, "s/tasks/1/process"), process);
     EXPECT_EQ(linesIn(textAt(scratch, "s/tasks.txt")), 3U);
+}
+
+TEST(ProgramSweep, TheListOfTasksFollowsTheOptions) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    EXPECT_EQ(textAt(scratch, "s/tasks.txt").find("--threads"), std::string::npos);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--threads", "3", "--dry-run"}, within(scratch)).code, 0);
+    EXPECT_NE(textAt(scratch, "s/tasks.txt").find("--task 1 --threads 3\n"), std::string::npos);
+    fs::rename(scratch.path() / "s.json", scratch.path() / "t.json");
+    ASSERT_EQ(runProgram({"sweep", "t.json", "--output", "s", "--dry-run"}, within(scratch)).code, 0);
+    EXPECT_NE(textAt(scratch, "s/tasks.txt").find("/t.json --output"), std::string::npos);
+}
+
+TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    scratch.file("s.json",
+                 R"({"command": "run small.json --frames 2 --no-render --backend cpu", "parameters": {"fluid.viscosity": [0.1, 1]}})");
+    const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
+    ASSERT_EQ(swept.code, 0) << swept.err;
+    EXPECT_EQ(swept.out.find("no task"), std::string::npos) << swept.out;
+    EXPECT_FALSE(fs::exists(scratch.path() / "out"));
+    const auto rows = rowsAt(scratch, "s/results.csv");
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_NE(std::find(rows[0].begin(), rows[0].end(), "energy.kinetic"), rows[0].end());
+    // Programs without numbers: a notice, because the table has none.
+    scratch.file("t.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    const Outcome without = runProgram({"sweep", "t.json"}, within(scratch));
+    EXPECT_NE(without.out.find("no task has left a stats.json"), std::string::npos) << without.out;
+}
+
+// Results of two scenes, or of two versions, are never in one table.
+TEST(ProgramSweep, AFolderIsThatOfItsScenes) {
+    const Scratch scratch;
+    fs::create_directory(scratch.path() / "a");
+    scratch.file("a/small.json", smallScene());
+    scratch.file("a/s.json", kSmallSweep);
+    const auto swept = [&](const char* folder, bool dry = true) {
+        std::vector<std::string> words = {"sweep", std::string(folder) + "/s.json", "--output", "s"};
+        if (dry) words.emplace_back("--dry-run");
+        return runProgram(words, within(scratch));
+    };
+    ASSERT_EQ(swept("a").code, 0);
+    // The same sweep beside another scene of the same name, and a scene that was edited.
+    const std::string edited = smallScene() + "\n";
+    fs::copy(scratch.path() / "a", scratch.path() / "b");
+    scratch.file("b/small.json", edited);
+    expectRefusal(swept("b"), 2, "b/small.json is not the file that the tasks in ");
+    scratch.file("a/small.json", edited);
+    expectRefusal(swept("a"), 2, "a/small.json is not the file that the tasks in ");
+    expectRefusal(runProgram({"sweep", "a/s.json", "--output", "s", "--task", "0"}, within(scratch)), 2, "is not the file that");
+    fs::remove(scratch.path() / "a/small.json");
+    expectRefusal(swept("a"), 2, "small.json cannot be read: it does not exist; restore it");
+    // A folder that was moved with its scenes.
+    scratch.file("a/small.json", smallScene());
+    fs::rename(scratch.path() / "a", scratch.path() / "c");
+    const Outcome moved = swept("c", false);
+    ASSERT_EQ(moved.code, 0) << moved.err;
+    EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 9U);
+    // Another version.
+    std::string origin = textAt(scratch, "s/origin.json");
+    const size_t at = origin.find(RIVULET_VERSION);
+    ASSERT_NE(at, std::string::npos);
+    scratch.file("s/origin.json", origin.replace(at, std::string(RIVULET_VERSION).size(), "0.0.9"));
+    expectRefusal(swept("c"), 2, "were made by version 0.0.9 of rivulet");
+}
+
+// Slurm may start a task hours after its sweep was submitted.
+TEST(ProgramSweep, TasksDoNotDependOnTheFileThatTheyWereMadeFrom) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/cp beside.txt {task}/{k}.txt", "parameters": {"k": [1, 2, 3]}})");
+    scratch.file("beside.txt", "beside");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "out/s", "--dry-run"}, within(scratch)).code, 0);
+    scratch.file("s.json", "{ edited");
+    for (const char* task : {"0", "2"}) {
+        const Outcome ran = runProgram({"sweep", "s.json", "--output", "out/s", "--task", task}, within(scratch));
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        fs::remove(scratch.path() / "s.json");
+    }
+    EXPECT_EQ(textAt(scratch, "out/s/tasks/2/3.txt"), "beside");
+    expectRefusal(runProgram({"sweep", "s.json", "--output", "out/s", "--task", "3"}, within(scratch)), 2, "the last is 2");
 }
 
 }  // namespace

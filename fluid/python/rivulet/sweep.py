@@ -8,7 +8,7 @@
     table["fluid.viscosity"], table["energy.kinetic"]
 
 docs/sweeps.md describes the file. Needs the program `rivulet`, on all workers at the same path, and a folder that all of them share. Workers
-need nothing else: neither this package nor librivulet.so.
+need nothing else: neither this package nor librivulet.so. pip does not install the program.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ import numpy.typing as npt
 __all__ = ["TaskError", "is_time", "prepare", "results", "run"]
 
 _Path = str | os.PathLike[str]
+_SHARED_SECONDS = 60.0  # NFS keeps the content of a folder for up to 60 s
 
 
 class TaskError(RuntimeError):
@@ -49,10 +50,14 @@ def prepare(path: _Path, output: _Path | None = None, *, threads: int = 1, progr
     """The folder of a sweep, made if there is none, and the command line of each task as words, for any engine that runs commands.
 
     output: the folder; by default NAME of NAME.json, in the working directory. threads: of each task. Raises ValueError with the
-    program's sentence if the sweep is refused."""
+    program's sentence if the sweep is refused, FileNotFoundError if there is no program."""
     folder = pathlib.Path(output if output is not None else pathlib.Path(path).stem).absolute()
     words = [program, "sweep", os.fspath(path), "--output", str(folder), "--threads", str(threads), "--dry-run"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+    except FileNotFoundError:
+        raise FileNotFoundError(f"the program {program} is not there; build or install rivulet, which pip does not, "
+                                "and name its path as `program`") from None
     if done.returncode != 0:
         raise ValueError(_sentence(done))
     return folder, [shlex.split(line) for line in (folder / "tasks.txt").read_text().splitlines()]
@@ -61,7 +66,7 @@ def prepare(path: _Path, output: _Path | None = None, *, threads: int = 1, progr
 def run(path: _Path, client: Any, output: _Path | None = None, *, threads: int = 1, program: str = "rivulet") -> dict[str, npt.NDArray[Any]]:
     """Runs the tasks that have not ended on a dask.distributed Client and returns the results. A task that was killed is done again.
 
-    Arguments as of prepare(). Raises TaskError after the last task if some failed."""
+    Arguments as of prepare(). Raises TaskError after the last task if some failed, or if a worker does not share the folder."""
     folder, lines = prepare(path, output, threads=threads, program=program)
     command = functools.partial(subprocess.run, capture_output=True, text=True, check=False)
     failures: dict[int, str] = {}
@@ -70,7 +75,7 @@ def run(path: _Path, client: Any, output: _Path | None = None, *, threads: int =
         return [k for k in range(len(lines)) if k not in failures and not (folder / "tasks" / str(k)).exists()]
 
     tasks = left()
-    while tasks:
+    if tasks:
         futures = client.map(command, [lines[k] for k in tasks], pure=False)  # Dask does a task again if its worker was lost
         for k, future in zip(tasks, futures, strict=True):
             lost = future.exception()
@@ -78,9 +83,11 @@ def run(path: _Path, client: Any, output: _Path | None = None, *, threads: int =
                 failures[k] = f"task {k}: {lost!r}"
             elif (done := future.result()).returncode != 0:
                 failures[k] = _sentence(done)
-        tasks = left()  # those that another process runs, for example one whose worker was lost
-        if tasks:
+        deadline = time.monotonic() + _SHARED_SECONDS  # a network's file system shows a new folder after some seconds
+        while (tasks := left()) and time.monotonic() < deadline:
             time.sleep(0.5)
+        for k in tasks:
+            failures[k] = f"task {k} has ended, but {folder / 'tasks' / str(k)} does not appear; use a folder that all workers share"
     if failures:
         raise TaskError(failures)
     return results(folder)
@@ -93,8 +100,12 @@ def is_time(column: str) -> bool:
 
 def results(folder: _Path) -> dict[str, npt.NDArray[Any]]:
     """The columns of results.csv in a sweep's folder, in order: one element for each task that has ended. A column of numbers is float64, with
-    NaN where a task has no value; other columns are texts. pandas.DataFrame(results(folder)) makes a table of it."""
-    with open(pathlib.Path(folder) / "results.csv", newline="", encoding="utf-8") as file:
+    NaN where a task has no value; other columns are texts. pandas.DataFrame(results(folder)) makes a table of it. Raises ValueError before the
+    first task has ended."""
+    path = pathlib.Path(folder) / "results.csv"
+    if not path.exists() and (path.parent / "sweep.json").exists():
+        raise ValueError(f"no task of {folder} has ended, so that there is no results.csv; run the sweep")
+    with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     columns = {}
     for k, name in enumerate(rows[0]):

@@ -1,0 +1,89 @@
+#include "demos/rivulet/sweep_origin.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <span>
+
+#include "engine/compute/disk_cache.h"
+#include "engine/core/file.h"
+#include "engine/core/json_parse.h"
+#include "engine/core/json_text.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRemedy = "choose another --output, or delete the folder";
+
+Result<std::string> hashOfFile(const std::string& file) {
+    const Result<std::string> bytes = readFile(file);
+    if (!bytes) return bytes.error();
+    return hashOf(std::as_bytes(std::span(*bytes)));
+}
+
+}  // namespace
+
+std::string originName(const std::string& file, const std::string& folder) {
+    std::error_code error;
+    const fs::path whole = fs::absolute(file, error).lexically_normal();
+    if (error) return file;
+    const fs::path below = whole.lexically_relative(folder);
+    return below.empty() || below.begin()->string() == ".." ? whole.string() : below.string();
+}
+
+Status hashScenes(SweepOrigin& origin) {
+    for (auto& [name, hash] : origin.scenes) {
+        Result<std::string> made = hashOfFile((fs::path(origin.folder) / name).string());
+        if (!made) return made.error();
+        hash = std::move(*made);
+    }
+    return ok();
+}
+
+Result<SweepOrigin> readOrigin(const std::string& file) {
+    const Result<std::string> text = readFile(file);
+    if (!text) return text.error();
+    const Result<Json::Value> root = parseJson(*text, file);
+    if (!root) return root.error();
+    const Error damaged = badInput(fmt::format("{} is damaged; {}", file, kRemedy));
+    if (!root->isObject() || !(*root)["folder"].isString() || !(*root)["version"].isString() || !(*root)["scenes"].isObject())
+        return damaged;
+    SweepOrigin origin{.folder = (*root)["folder"].asString(), .version = (*root)["version"].asString(), .scenes = {}};
+    const Json::Value& scenes = (*root)["scenes"];
+    for (const std::string& name : scenes.getMemberNames()) {
+        if (!scenes[name].isString()) return damaged;
+        origin.scenes.emplace(name, scenes[name].asString());
+    }
+    return origin;
+}
+
+Status writeOrigin(const SweepOrigin& origin, const std::string& file) {
+    Json::Value root;
+    root["folder"] = origin.folder;
+    root["version"] = origin.version;
+    root["scenes"] = Json::Value(Json::objectValue);
+    for (const auto& [name, hash] : origin.scenes) root["scenes"][name] = hash;
+    constexpr int kDigits = 9;
+    return writeFileAtomic(file, jsonText(root, kDigits));
+}
+
+Status checkOrigin(const SweepOrigin& origin, const std::string& folder, const std::string& tasks) {
+    if (origin.version != RIVULET_VERSION)
+        return badInput(fmt::format("the tasks in {} were made by version {} of rivulet, and this is {}; {}", tasks, origin.version,
+                                    RIVULET_VERSION, kRemedy));
+    for (const auto& [name, hash] : origin.scenes) {
+        const std::string file = (fs::path(folder) / name).string();
+        const Result<std::string> now = hashOfFile(file);
+        if (!now)
+            return badInput(
+                fmt::format("a scene that the tasks in {} read is missing: {}; restore it, or {}", tasks, now.error().message, kRemedy));
+        if (*now != hash)
+            return badInput(fmt::format("{} is not the file that the tasks in {} were made with; restore it, or {}", file, tasks, kRemedy));
+    }
+    return ok();
+}
+
+}  // namespace rivulet

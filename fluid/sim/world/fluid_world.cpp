@@ -280,45 +280,50 @@ WetnessView FluidWorld::wetness() const {
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                        Sources sources, std::span<const HostForce> forces, const StartProgress& progress) {
-    if (Status s = checkParams("fluid", params); !s) return s.error();
-    device.goOn();
-    const BoxParams& box = params.box;
-    if (!glm::all(glm::lessThan(box.min, box.max)))
-        return badInput(fmt::format("fluid.box.min [{}, {}, {}] m must lie below fluid.box.max [{}, {}, {}] m on every axis", box.min.x,
-                                    box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
-    std::unique_ptr<FluidWorld> world(new FluidWorld());
-    Impl& w = *world->impl_;
-    if (Status s = checkAttributes(params); !s) return s.error();
-    w.device = &device;
-    w.params = params;
-    w.sourceSetup = std::move(sources);
-    Result<WorldForces> worldForces = WorldForces::create(forces);
-    if (!worldForces) return worldForces.error();
-    w.forces = std::move(*worldForces);
-    if (Status s = takeLiquid(w.params); !s) return s.error();
-    if (device.backend() != Backend::cpu && params.workGroup != FluidParams{}.workGroup)
-        w.traits.workGroup = static_cast<uint32_t>(params.workGroup);
-    w.traits.linked = params.grid == "linked_list";
-    if (w.traits.linked)
-        if (Status can = w.mayLink(); !can) return can.error();
-    Result<SolidPasses> passes = SolidPasses::create(device, solids, w.params, w.traits.threadDefines());
-    if (!passes) return passes.error();
-    w.solids = std::move(*passes);
-    Result<BodyPasses> bodies =
-        BodyPasses::create(device, solids.bodies, solids.bodyHost, w.params,
-                           {.periodic = params.box.periodic(), .asleepRows = params.sleep.on && device.backend() != Backend::cpu});
-    if (!bodies) return bodies.error();
-    w.bodies = std::move(*bodies);
-    w.log = std::move(log);
-    w.gravity = params.gravity;
-    w.progress = progress;
-    if (Status s = w.prepare(solids); !s) return s.error();
-    w.probeTargets = ProbeTargets::of(solids);
-    if (Status s = w.prepareProbes(w.params); !s) return s.error();
-    w.progress = {};
-    if (w.cancelled) return failed("the creation of the water was cancelled");
-    if (w.startInterrupted || device.interrupted() || device.stopAsked()) return failed("the creation of the water was interrupted");
-    return world;
+    try {
+        if (Status s = checkParams("fluid", params); !s) return s.error();
+        device.goOn();
+        const BoxParams& box = params.box;
+        if (!glm::all(glm::lessThan(box.min, box.max)))
+            return badInput(fmt::format("fluid.box.min [{}, {}, {}] m must lie below fluid.box.max [{}, {}, {}] m on every axis", box.min.x,
+                                        box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
+        std::unique_ptr<FluidWorld> world(new FluidWorld());
+        Impl& w = *world->impl_;
+        if (Status s = checkAttributes(params); !s) return s.error();
+        w.device = &device;
+        w.params = params;
+        w.sourceSetup = std::move(sources);
+        Result<WorldForces> worldForces = WorldForces::create(forces);
+        if (!worldForces) return worldForces.error();
+        w.forces = std::move(*worldForces);
+        if (Status s = takeLiquid(w.params); !s) return s.error();
+        if (device.backend() != Backend::cpu && params.workGroup != FluidParams{}.workGroup)
+            w.traits.workGroup = static_cast<uint32_t>(params.workGroup);
+        w.traits.linked = params.grid == "linked_list";
+        if (w.traits.linked)
+            if (Status can = w.mayLink(); !can) return can.error();
+        Result<SolidPasses> passes = SolidPasses::create(device, solids, w.params, w.traits.threadDefines());
+        if (!passes) return passes.error();
+        w.solids = std::move(*passes);
+        Result<BodyPasses> bodies =
+            BodyPasses::create(device, solids.bodies, solids.bodyHost, w.params,
+                               {.periodic = params.box.periodic(), .asleepRows = params.sleep.on && device.backend() != Backend::cpu});
+        if (!bodies) return bodies.error();
+        w.bodies = std::move(*bodies);
+        w.log = std::move(log);
+        w.gravity = params.gravity;
+        w.progress = progress;
+        if (Status s = w.prepare(solids); !s) return s.error();
+        w.probeTargets = ProbeTargets::of(solids);
+        if (Status s = w.prepareProbes(w.params); !s) return s.error();
+        w.progress = {};
+        if (w.cancelled) return failed("the creation of the water was cancelled");
+        if (w.startInterrupted || device.interrupted() || device.stopAsked()) return failed("the creation of the water was interrupted");
+        return world;
+    } catch (const std::bad_alloc&) {
+        return noMemory(
+            "there is not enough memory for the water: use fewer particles, or lower fluid.maxParticles or fluid.bodies.maxSamples");
+    }
 }
 
 }  // namespace rivulet

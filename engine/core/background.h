@@ -25,11 +25,13 @@ class Background {
     // destroyed; what has no loops looks at currentJobs().stop. What it throws becomes an Error.
     Background(std::function<Result<T>()> make, const Jobs& jobs) : state_(std::make_unique<State>()) {
         state_->make = std::move(make);
-        const auto function = [](void* state) { static_cast<State*>(state)->run(); };
+        // Pointers of plain types: std::thread makes types of what it is given, which a host's shared library would export.
+        void (*const function)(void*) = [](void* state) { static_cast<State*>(state)->run(); };
+        void* const state = state_.get();
         if (jobs.start != nullptr)
-            jobs.start(jobs.user, function, state_.get());
+            jobs.start(jobs.user, function, state);
         else
-            state_->own = std::thread(function, state_.get());
+            state_->own = std::thread(function, state);
     }
     ~Background() {  // cancels it, and waits until it has stopped
         state_->stop = true;

@@ -8,7 +8,7 @@
 
 namespace rivulet {
 
-// A sweep whose tasks are the points of this chart, for `rivulet sweep`.
+// A sweep with one task for each point of this chart, for `rivulet sweep`.
 std::string sweepOfChart(const ChartRequest& request);
 
 // A point as JSON, numbers exactly.

@@ -47,7 +47,7 @@ class SweepFolder {
     // `error` gives the reason.
     Descriptor lock(size_t task, std::optional<Error>& error, bool wait = false) const;
 
-    // Adds the tasks that have ended to results.csv and removes those whose folder is gone; `again` is read again. The bytes depend on
+    // Adds the tasks that have ended to results.csv and removes those without a folder; `again` is read again. The bytes depend on
     // nothing but the tasks; `next` is closed before the tasks are listed. Returns the size of the table. Error (failed): not writable.
     Result<TableSize> collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt, Descriptor* next = nullptr) const;
     // The same for a task that has just ended, unless another process is about to do it: the table is read and written once for all tasks

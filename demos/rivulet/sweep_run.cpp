@@ -244,7 +244,7 @@ class SweepJobs {
 int runSweepTasks(const Sweep& sweep, const SweepFolder& folder, int jobs, int threads) {
     const Graceful graceful;
     SweepJobs all(sweep, folder, jobs, threads);
-    if (const auto before = folder.collect(sweep); !before) return report(before.error());  // without the tasks whose folder is gone
+    if (const auto before = folder.collect(sweep); !before) return report(before.error());  // removes tasks without a folder from the table
     Descriptor table = folder.takeTable();
     if (Status run = all.run(graceful); !run) return report(run.error());
     (void)table.close();

@@ -8,7 +8,7 @@
 namespace rivulet {
 
 // Runs one task: its commands, one after another, until one fails. If another process runs it, waits, and runs it if that one did not end
-// it. Returns an ExitCode; kDone: the task has ended; kFailed: a command failed, whose last line is on stderr.
+// it. Returns an ExitCode; kDone: the task has ended; kFailed: a command failed; its last line is on stderr.
 int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int threads);
 
 // Runs all tasks that have not ended, `jobs` at a time. Returns an ExitCode; kFailed: some tasks failed; 128 + the signal that

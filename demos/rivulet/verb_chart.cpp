@@ -116,7 +116,7 @@ int chartVerb(const Arguments& arguments) {
     reader.positional("CASE", "cases to measure, stability or surface; default: all", request.names);
     reader.flag("--quick", "fewer cases and sizes", request.quick);
     reader.option("--out", "DIR", "output folder; default: docs", folder);
-    reader.option("--sweep", "FILE.json", "measure nothing; write a sweep whose tasks are the points of speed_accuracy.md", parts.sweep);
+    reader.option("--sweep", "FILE.json", "measure nothing; write a sweep with one task for each point of speed_accuracy.md", parts.sweep);
     reader.option("--points", "DIR", "make speed_accuracy.md of the points in the folder of that sweep", parts.points);
     reader.option("--point", "K", "measure one point of speed_accuracy.md, 0 for the first, and write it to --json", parts.point, 0,
                   1'000'000);

@@ -14,9 +14,7 @@ constexpr const char* kTriangle = "v 0 0 0\nv 0.2 0 0\nv 0 0.2 0\nf 1 2 3\n";
 // Runs the scene headless; expects exit 2, one sentence that holds all of `mentions`, and no file beside those that were there.
 void expectBad(const Scratch& scratch, const std::string& scene, const std::vector<std::string>& mentions) {
     std::vector<std::string> before = scratch.contents();
-    RunOptions options;
-    options.folder = scratch.path();
-    Outcome outcome = runProgram({"run", scene, "--headless", "--no-render", "--backend", "cpu", "--frames", "1"}, options);
+    Outcome outcome = runProgram({"run", scene, "--headless", "--no-render", "--backend", "cpu", "--frames", "1"}, in(scratch));
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_EQ(linesIn(outcome.err), 1U) << outcome.err;
     EXPECT_TRUE(outcome.err.starts_with("rivulet: ")) << outcome.err;
@@ -106,9 +104,7 @@ TEST(ProgramBadScene, Meshes) {
     scratch.file("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 inf 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 4 5\n");
     expectBad(scratch, sceneOf("nan.obj"), {"nan.obj", "2"});
     scratch.file("good.obj", kTriangle);
-    RunOptions options;
-    options.folder = scratch.path();
-    Outcome good = runProgram({"run", sceneOf("good.obj"), "--headless", "--no-render", "--backend", "cpu", "--frames", "1"}, options);
+    Outcome good = runProgram({"run", sceneOf("good.obj"), "--headless", "--no-render", "--backend", "cpu", "--frames", "1"}, in(scratch));
     EXPECT_EQ(good.code, 0) << good.err;
 }
 

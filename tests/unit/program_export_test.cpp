@@ -13,12 +13,6 @@
 namespace rivulet::testing::program_export_test {
 namespace {
 
-RunOptions in(const Scratch& scratch) {
-    RunOptions options;
-    options.folder = scratch.path();
-    return options;
-}
-
 constexpr double kBlock = 0.16 * 0.16 * 0.12;  // m^3
 
 // A block falls for six frames and is still whole.

@@ -26,12 +26,6 @@ using Words = std::vector<std::string>;
 
 constexpr int kKilled = 128 + SIGKILL;
 
-RunOptions in(const Scratch& scratch) {
-    RunOptions options;
-    options.folder = scratch.path();
-    return options;
-}
-
 // A program that waits for ever is killed, and its status is then kKilled.
 RunOptions patientIn(const Scratch& scratch) {
     RunOptions options = in(scratch);
@@ -42,12 +36,6 @@ RunOptions patientIn(const Scratch& scratch) {
 Words joined(Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
-}
-
-std::string contentOf(const Scratch& scratch, const std::string& name) {
-    const Result<std::string> bytes = readFile((scratch.path() / name).string());
-    EXPECT_TRUE(bytes) << name;
-    return bytes ? *bytes : "";
 }
 
 // Names of files that are not complete.
@@ -78,7 +66,7 @@ std::string recordingIn(const Scratch& scratch) {
     scratch.file("s.json", smallScene());
     const Outcome made = runProgram(joined(kRecord, {"--frames", "4"}), in(scratch));
     EXPECT_EQ(made.code, 0) << made.err;
-    return contentOf(scratch, "s.rrec");
+    return scratch.text("s.rrec");
 }
 
 // One frame of it is drawn; returns what the program reports.
@@ -121,7 +109,7 @@ TEST(ProgramFiles, AFileLimitLeavesTheOldRecording) {
     const Outcome outcome = runProgram(joined(kRecord, {"--frames", "10000"}), limited);
     expectRefusal(outcome, 1, "s.rrec: frame ");
     EXPECT_NE(outcome.err.find("ulimit -f); the older file is unchanged"), std::string::npos) << outcome.err;
-    EXPECT_TRUE(contentOf(scratch, "s.rrec") == old);
+    EXPECT_TRUE(scratch.text("s.rrec") == old);
     // Where no recording would be lost, the frames until then stay.
     fs::remove(scratch.path() / "s.rrec");
     expectRefusal(runProgram(joined(kRecord, {"--frames", "10000"}), limited), 1, "s.rrec: frame ");
@@ -136,19 +124,19 @@ TEST(ProgramFiles, AFullDiskLeavesTheOldFiles) {
     if (!disk) GTEST_SKIP() << "only root can mount a small disk";
     const Words run = {"run", "s.json", "--no-render", "--backend", "cpu", "--stats", "disk/stats.json", "--save", "disk/s.rstate"};
     ASSERT_EQ(runProgram(joined(run, {"--frames", "2", "--record", "disk/s.rrec"}), in(scratch)).code, 0);
-    const std::string recording = contentOf(scratch, "disk/s.rrec"), state = contentOf(scratch, "disk/s.rstate"),
-                      stats = contentOf(scratch, "disk/stats.json");
+    const std::string recording = scratch.text("disk/s.rrec"), state = scratch.text("disk/s.rstate"),
+                      stats = scratch.text("disk/stats.json");
     expectRefusal(runProgram(joined(run, {"--frames", "10000", "--record", "disk/s.rrec"}), in(scratch)), 1,
                   "cannot be written: the disk is full; the older file is unchanged");
-    EXPECT_TRUE(contentOf(scratch, "disk/s.rrec") == recording);
+    EXPECT_TRUE(scratch.text("disk/s.rrec") == recording);
     // No room is left for anything.
     std::ofstream(scratch.path() / "disk/fill") << std::string(1 << 20, 'x');
     expectRefusal(runProgram(joined(run, {"--frames", "3"}), in(scratch)), 1, "the disk is full");
     expectRefusal(runProgram({"export", "s.json", "--backend", "cpu", "--format", "csv", "--out", "disk", "--seconds", "0.1"}, in(scratch)),
                   1, "the disk is full");
-    EXPECT_TRUE(contentOf(scratch, "disk/s.rrec") == recording);
-    EXPECT_TRUE(contentOf(scratch, "disk/s.rstate") == state);
-    EXPECT_TRUE(contentOf(scratch, "disk/stats.json") == stats);
+    EXPECT_TRUE(scratch.text("disk/s.rrec") == recording);
+    EXPECT_TRUE(scratch.text("disk/s.rstate") == state);
+    EXPECT_TRUE(scratch.text("disk/stats.json") == stats);
     EXPECT_EQ(unfinished(scratch), Words{});
 }
 
@@ -158,7 +146,7 @@ TEST(ProgramFiles, AKilledRunLeavesTheOldRecording) {
     RunOptions killed = in(scratch);
     killed.whileRunning = [&](pid_t) { return bytesBeside(scratch, "s.rrec", old) > 60'000 ? SIGKILL : 0; };
     EXPECT_EQ(runProgram(joined(kRecord, {"--frames", "1000000"}), killed).code, kKilled);
-    EXPECT_TRUE(contentOf(scratch, "s.rrec") == old);
+    EXPECT_TRUE(scratch.text("s.rrec") == old);
     EXPECT_EQ(shown(scratch, "s.rrec"), "");
     // What the killed run left is not complete, and can be shown.
     const Words left = unfinished(scratch);
@@ -190,7 +178,7 @@ TEST(ProgramFiles, AnInterruptedRecordingIsClosedAndReplacesTheOldOne) {
             return signal;
         };
         EXPECT_EQ(runProgram(joined(kRecord, {"--frames", "1000000"}), stopped).code, 128 + signal);
-        EXPECT_GT(contentOf(scratch, "s.rrec").size(), 60'000U);
+        EXPECT_GT(scratch.text("s.rrec").size(), 60'000U);
         EXPECT_EQ(shown(scratch, "s.rrec"), "") << "it is complete";
         EXPECT_EQ(unfinished(scratch), Words{});
         EXPECT_TRUE(fs::exists(scratch.path() / "out/stats.json"));
@@ -207,7 +195,7 @@ TEST(ProgramFiles, AVideoThatFailsLeavesTheOldOne) {
         runProgram({"run", "s.json", "--headless", "--size", "320x240", "--frames", "200", "--video", "v.mp4"}, limited);
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_EQ(linesIn(outcome.err), 1U) << outcome.err;
-    EXPECT_EQ(contentOf(scratch, "v.mp4"), "the old video");
+    EXPECT_EQ(scratch.text("v.mp4"), "the old video");
     EXPECT_EQ(unfinished(scratch), Words{});
 }
 
@@ -325,9 +313,9 @@ TEST(ProgramFiles, MessagesNeverReachADataFile) {
         const bool printed = std::find(cases[k].begin(), cases[k].end(), 1) == cases[k].end();
         const Outcome outcome = run(name, cases[k]);
         EXPECT_EQ(outcome.code, printed ? 0 : 1) << outcome.err;
-        EXPECT_TRUE(contentOf(scratch, name + ".rrec") == contentOf(scratch, "open.rrec")) << k;
-        EXPECT_TRUE(contentOf(scratch, name + ".rstate") == contentOf(scratch, "open.rstate")) << k;
-        EXPECT_EQ(contentOf(scratch, name + ".json")[0], '{') << k;
+        EXPECT_TRUE(scratch.text(name + ".rrec") == scratch.text("open.rrec")) << k;
+        EXPECT_TRUE(scratch.text(name + ".rstate") == scratch.text("open.rstate")) << k;
+        EXPECT_EQ(scratch.text(name + ".json")[0], '{') << k;
     }
 }
 

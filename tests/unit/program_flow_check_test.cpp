@@ -14,12 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kMeshes = fs::path(RIVULET_SOURCE_DIR) / "assets/meshes";
 
-RunOptions in(const Scratch& scratch) {
-    RunOptions options;
-    options.folder = scratch.path();
-    return options;
-}
-
 Json::Value readJson(const fs::path& path) {
     std::ifstream stream(path);
     Json::Value value;

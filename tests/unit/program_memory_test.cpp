@@ -20,8 +20,7 @@ Outcome limited(long kilobytes, const std::vector<std::string>& arguments, const
 TEST(ProgramMemory, ARunUnderALimitEndsWithASentence) {
     if (kSanitized) GTEST_SKIP() << "a sanitizer reserves more than any limit";
     Scratch scratch;
-    RunOptions options;
-    options.folder = scratch.path();
+    RunOptions options = in(scratch);
     if (runCommand({"taskset", "-c", "0", "true"}, options).code != 0) GTEST_SKIP() << "taskset is not there";
     const std::string scene =
         scratch.file("large.json", R"({"name": "large", "fluid": {"spacing": 0.015, "maxSubsteps": 2, "pbf": {"iterations": 1},

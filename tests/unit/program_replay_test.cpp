@@ -7,7 +7,6 @@
 #include <imgui_internal.h>
 #include <signal.h>
 
-#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
@@ -17,21 +16,10 @@ namespace rivulet::program_replay_test {
 namespace {
 
 using testing::expectRefusal;
+using testing::in;
 using testing::Outcome;
 using testing::runProgram;
 using testing::Scratch;
-
-testing::RunOptions in(const Scratch& scratch) {
-    testing::RunOptions options;
-    options.folder = scratch.path();
-    return options;
-}
-
-std::string contents(const Scratch& scratch, const std::string& file) {
-    Result<std::string> bytes = readFile((scratch.path() / file).string());
-    EXPECT_TRUE(bytes) << file;
-    return bytes ? *bytes : "";
-}
 
 const std::string kScenes = RIVULET_SOURCE_DIR "/assets/scenes/";
 const std::vector<std::string> kSmall = {"--headless", "--size", "160x120", "--still", "0.05", "--still", "0.1"};
@@ -72,9 +60,9 @@ TEST(ProgramReplay, ShowsTheSamePictures) {
         ASSERT_EQ(replayed.code, 0) << c.shows << ": " << replayed.err;
         for (const int f : {3, 6}) {
             const std::string name = fmt::format("{}_{:04}.png", c.scene, f);
-            EXPECT_TRUE(contents(scratch, "a/" + name) == contents(scratch, "b/" + name)) << c.shows << ", frame " << f;
+            EXPECT_TRUE(scratch.text("a/" + name) == scratch.text("b/" + name)) << c.shows << ", frame " << f;
         }
-        EXPECT_FALSE(contents(scratch, fmt::format("a/{}_0003.png", c.scene)) == contents(scratch, fmt::format("a/{}_0006.png", c.scene)))
+        EXPECT_FALSE(scratch.text(fmt::format("a/{}_0003.png", c.scene)) == scratch.text(fmt::format("a/{}_0006.png", c.scene)))
             << "something moves";
     }
 }
@@ -144,12 +132,12 @@ TEST(ProgramReplay, ARunThatWasCutIsShown) {
     const Outcome whole = runProgram(show, in(scratch));
     EXPECT_EQ(whole.code, 0) << whole.err;
     EXPECT_EQ(whole.err, "");
-    const std::string picture = contents(scratch, "out/small_0000.png");
+    const std::string picture = scratch.text("out/small_0000.png");
     std::filesystem::resize_file(scratch.path() / "s.rrec", 50'000);
     const Outcome rest = runProgram(show, in(scratch));
     EXPECT_EQ(rest.code, 0) << rest.err;
     EXPECT_NE(rest.err.find("s.rrec has no end: it is cut off or damaged at byte"), std::string::npos) << rest.err;
-    EXPECT_TRUE(contents(scratch, "out/small_0000.png") == picture);
+    EXPECT_TRUE(scratch.text("out/small_0000.png") == picture);
 }
 
 // A user at a window that shows a recording: keys work, and fixed values stay.

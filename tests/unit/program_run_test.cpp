@@ -32,12 +32,6 @@ std::string probe(const fs::path& video) {
         .out;
 }
 
-RunOptions in(const Scratch& scratch) {
-    RunOptions options;
-    options.folder = scratch.path();
-    return options;
-}
-
 TEST(ProgramRun, HeadlessLeavesVideoPicturesAndFigures) {
     Scratch scratch;
     std::string scene = scratch.file("small.json", smallScene());

@@ -87,11 +87,22 @@ std::string Scratch::file(const std::string& name, const std::string& text) cons
     return path.string();
 }
 
+std::string Scratch::text(const std::string& file) const {
+    EXPECT_TRUE(fs::is_regular_file(path_ / file)) << file;
+    return textOf(path_ / file);
+}
+
 std::vector<std::string> Scratch::contents() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(path_)) names.push_back(fs::relative(entry.path(), path_).string());
     std::sort(names.begin(), names.end());
     return names;
+}
+
+RunOptions in(const Scratch& scratch) {
+    RunOptions options;
+    options.folder = scratch.path();
+    return options;
 }
 
 std::string smallScene(const std::string& more) {

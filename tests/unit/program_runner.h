@@ -38,11 +38,14 @@ class Scratch {
     Scratch& operator=(const Scratch&) = delete;
     const std::filesystem::path& path() const { return path_; }
     std::string file(const std::string& name, const std::string& text = {}) const;  // written when `text` is not empty; its path
+    std::string text(const std::string& file) const;                                // a file's bytes; a failure and "" if there is none
     std::vector<std::string> contents() const;                                      // relative, sorted, hidden ones too
 
   private:
     std::filesystem::path path_;
 };
+
+RunOptions in(const Scratch& scratch);  // with its folder as the working directory
 
 // A scene of some 300 particles that steps in a blink: a block in the air in a 0.4 m box.
 std::string smallScene(const std::string& more = {});

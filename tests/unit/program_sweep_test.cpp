@@ -11,7 +11,6 @@
 #include <sstream>
 #include <thread>
 
-#include "engine/core/file.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::testing::program_sweep_test {
@@ -19,22 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RunOptions within(const Scratch& scratch) {
-    RunOptions options;
-    options.folder = scratch.path();
-    return options;
-}
-
-std::string textAt(const Scratch& scratch, const std::string& file) {
-    const Result<std::string> bytes = readFile((scratch.path() / file).string());
-    EXPECT_TRUE(bytes) << file;
-    return bytes ? *bytes : "";
-}
-
 // Rows of a table without quotations; the first names the columns.
 std::vector<std::vector<std::string>> rowsAt(const Scratch& scratch, const std::string& file) {
     std::vector<std::vector<std::string>> rows;
-    std::istringstream lines(textAt(scratch, file));
+    std::istringstream lines(scratch.text(file));
     for (std::string line; std::getline(lines, line);) {
         rows.emplace_back();
         std::istringstream cells(line);
@@ -65,7 +52,7 @@ TEST(ProgramSweep, TheTableHasTheFiguresOfEachRun) {
     const Scratch scratch;
     scratch.file("small.json", smallScene());
     scratch.file("s.json", kSmallSweep);
-    const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
+    const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
     ASSERT_EQ(swept.code, 0) << swept.err;
     EXPECT_NE(swept.out.find("8 of 8 tasks have ended"), std::string::npos) << swept.out;
     const auto rows = rowsAt(scratch, "s/results.csv");
@@ -84,12 +71,12 @@ TEST(ProgramSweep, TheTableHasTheFiguresOfEachRun) {
         EXPECT_EQ(row[2], task % 2 == 0 ? "pbf" : "wcsph");
         ASSERT_EQ(runProgram({"run", "small.json", "--no-render", "--backend", "cpu", "--frames", "2", "--stats", "alone.json", "--set",
                               "fluid.viscosity=" + row[1], "--set", "fluid.method=" + row[2]},
-                             within(scratch))
+                             in(scratch))
                       .code,
                   0);
-        EXPECT_NE(textAt(scratch, "alone.json").find("\"kinetic\": " + row[column("energy.kinetic")]), std::string::npos) << task;
+        EXPECT_NE(scratch.text("alone.json").find("\"kinetic\": " + row[column("energy.kinetic")]), std::string::npos) << task;
     }
-    EXPECT_NE(textAt(scratch, "s/tasks/0/stats.json").find(", 1 thread, "), std::string::npos) << "each task has one thread";
+    EXPECT_NE(scratch.text("s/tasks/0/stats.json").find(", 1 thread, "), std::string::npos) << "each task has one thread";
 }
 
 // Whatever order tasks end in, and whichever process runs them.
@@ -97,28 +84,28 @@ TEST(ProgramSweep, TheTableDoesNotDependOnTheOrder) {
     const Scratch scratch;
     scratch.file("small.json", smallScene());
     scratch.file("s.json", kSmallSweep);
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--jobs", "3"}, within(scratch)).code, 0);
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one", "--dry-run"}, within(scratch)).code, 0);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--jobs", "3"}, in(scratch)).code, 0);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one", "--dry-run"}, in(scratch)).code, 0);
     EXPECT_FALSE(fs::exists(scratch.path() / "one/results.csv")) << "a dry run runs nothing";
-    EXPECT_EQ(linesIn(textAt(scratch, "one/tasks.txt")), 8U);
+    EXPECT_EQ(linesIn(scratch.text("one/tasks.txt")), 8U);
     for (const char* task : {"5", "7", "0", "2", "6", "1", "3", "4"})
-        ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one", "--task", task}, within(scratch)).code, 0);
+        ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one", "--task", task}, in(scratch)).code, 0);
     EXPECT_EQ(withoutTimes(scratch, "one/results.csv"), withoutTimes(scratch, "s/results.csv"));
-    EXPECT_EQ(linesIn(textAt(scratch, "one/results.csv")), 9U);
+    EXPECT_EQ(linesIn(scratch.text("one/results.csv")), 9U);
 
     // A table that was lost, or that lacks a row, is made again from the tasks, byte for byte.
-    const std::string table = textAt(scratch, "one/results.csv");
+    const std::string table = scratch.text("one/results.csv");
     const size_t row = table.find("\n4,");
     for (const std::string& damaged : {std::string(), table.substr(0, row + 1), table.substr(0, row + 9)}) {
         scratch.file("one/results.csv", damaged.empty() ? " " : damaged);
-        ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one"}, within(scratch)).code, 0);
-        EXPECT_EQ(textAt(scratch, "one/results.csv"), table);
+        ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one"}, in(scratch)).code, 0);
+        EXPECT_EQ(scratch.text("one/results.csv"), table);
     }
     // Slurm's script, run as an array job does: one process for each index.
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "array", "--with", "slurm", "--dry-run"}, within(scratch)).code, 0);
-    EXPECT_NE(textAt(scratch, "array/slurm.sh").find("#SBATCH --array=0-7\n"), std::string::npos);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "array", "--with", "slurm", "--dry-run"}, in(scratch)).code, 0);
+    EXPECT_NE(scratch.text("array/slurm.sh").find("#SBATCH --array=0-7\n"), std::string::npos);
     for (int k = 7; k >= 0; --k) {
-        RunOptions index = within(scratch);
+        RunOptions index = in(scratch);
         index.environment = {{"SLURM_ARRAY_TASK_ID", std::to_string(k)}};
         ASSERT_EQ(runCommand({"bash", "array/slurm.sh"}, index).code, 0);
     }
@@ -128,9 +115,9 @@ TEST(ProgramSweep, TheTableDoesNotDependOnTheOrder) {
 TEST(ProgramSweep, AnArrayThatIsTooLongForSlurmSharesItsTasks) {
     const Scratch scratch;
     scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": {"from": 0, "to": 2402, "count": 2403}}})");
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--with", "slurm", "--dry-run"}, within(scratch)).code, 0);
-    EXPECT_NE(textAt(scratch, "s/slurm.sh").find("#SBATCH --array=0-1000\n"), std::string::npos);
-    RunOptions index = within(scratch);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--with", "slurm", "--dry-run"}, in(scratch)).code, 0);
+    EXPECT_NE(scratch.text("s/slurm.sh").find("#SBATCH --array=0-1000\n"), std::string::npos);
+    RunOptions index = in(scratch);
     index.environment = {{"SLURM_ARRAY_TASK_ID", "401"}};
     ASSERT_EQ(runCommand({"bash", "s/slurm.sh"}, index).code, 0);
     const auto rows = rowsAt(scratch, "s/results.csv");
@@ -143,14 +130,14 @@ TEST(ProgramSweep, AnArrayThatIsTooLongForSlurmSharesItsTasks) {
 TEST(ProgramSweep, SlurmsScriptQuotesItsFolder) {
     const Scratch scratch;
     scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "a TASK 9%", "--with", "slurm", "--dry-run"}, within(scratch)).code, 0);
-    const std::string script = textAt(scratch, "a TASK 9%/slurm.sh");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "a TASK 9%", "--with", "slurm", "--dry-run"}, in(scratch)).code, 0);
+    const std::string script = scratch.text("a TASK 9%/slurm.sh");
     EXPECT_NE(script.find("#SBATCH --output=\"" + scratch.path().string() + "/a TASK 9%%/slurm/%a.txt\"\n"), std::string::npos) << script;
-    RunOptions index = within(scratch);
+    RunOptions index = in(scratch);
     index.environment = {{"SLURM_ARRAY_TASK_ID", "1"}};
     ASSERT_EQ(runCommand({"bash", "a TASK 9%/slurm.sh"}, index).code, 0);
     EXPECT_TRUE(fs::exists(scratch.path() / "a TASK 9%/tasks/1"));
-    expectRefusal(runProgram({"sweep", "s.json", "--output", "a\"b", "--with", "slurm", "--dry-run"}, within(scratch)), 2,
+    expectRefusal(runProgram({"sweep", "s.json", "--output", "a\"b", "--with", "slurm", "--dry-run"}, in(scratch)), 2,
                   "choose another --output");
 }
 
@@ -163,7 +150,7 @@ std::map<std::string, std::string> processesOf(const Scratch& scratch) {
     std::map<std::string, std::string> processes;
     for (const auto& entry : fs::directory_iterator(scratch.path() / "s/tasks"))
         if (entry.path().extension().empty())
-            processes[entry.path().filename()] = textAt(scratch, "s/tasks/" + entry.path().filename().string() + "/process");
+            processes[entry.path().filename()] = scratch.text("s/tasks/" + entry.path().filename().string() + "/process");
     return processes;
 }
 
@@ -182,7 +169,7 @@ TEST(ProgramSweep, AKilledSweepLosesNoTaskAndRunsNoneTwice) {
     for (const int signal : {SIGKILL, SIGINT}) {
         const Scratch scratch;
         scratch.file("s.json", kSlowSweep);
-        RunOptions killed = within(scratch);
+        RunOptions killed = in(scratch);
         killed.whileRunning = [&](pid_t) {
             std::error_code none;
             return fs::exists(scratch.path() / "s/tasks/2", none) ? signal : 0;
@@ -198,7 +185,7 @@ TEST(ProgramSweep, AKilledSweepLosesNoTaskAndRunsNoneTwice) {
         EXPECT_LT(before.size(), 10U);
         if (signal == SIGINT) EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), before.size() + 1) << "what ended is in the table";
 
-        const Outcome resumed = runProgram({"sweep", "s.json", "--jobs", "4"}, within(scratch));
+        const Outcome resumed = runProgram({"sweep", "s.json", "--jobs", "4"}, in(scratch));
         ASSERT_EQ(resumed.code, 0) << resumed.err;
         const auto after = processesOf(scratch);
         EXPECT_EQ(after.size(), 10U);
@@ -213,23 +200,23 @@ TEST(ProgramSweep, TwoProcessesDoATaskOnce) {
     const Scratch scratch;
     scratch.file("s.json", kSlowSweep);
     Outcome second;
-    RunOptions first = within(scratch);
+    RunOptions first = in(scratch);
     first.whileRunning = [&](pid_t) {
         std::error_code none;
         if (second.code < 0 && fs::exists(scratch.path() / "s/tasks/3.part/beats", none))
-            second = runProgram({"sweep", "s.json", "--task", "3"}, within(scratch));
+            second = runProgram({"sweep", "s.json", "--task", "3"}, in(scratch));
         return 0;
     };
     EXPECT_EQ(runProgram({"sweep", "s.json", "--task", "3"}, first).code, 0);
     EXPECT_EQ(second.code, 0) << second.err;
     EXPECT_EQ(second.out, "task 3 is run by another process; waiting for its end\ntask 3 has ended before\n");
-    EXPECT_EQ(textAt(scratch, "s/tasks/3/beats").size(), 8U);
-    EXPECT_EQ(runProgram({"sweep", "s.json", "--task", "3"}, within(scratch)).out, "task 3 has ended before\n");
+    EXPECT_EQ(scratch.text("s/tasks/3/beats").size(), 8U);
+    EXPECT_EQ(runProgram({"sweep", "s.json", "--task", "3"}, in(scratch)).out, "task 3 has ended before\n");
     // Two sweeps of the same folder share the tasks.
     Outcome other;
-    RunOptions both = within(scratch);
+    RunOptions both = in(scratch);
     both.whileRunning = [&](pid_t) {
-        if (other.code < 0) other = runProgram({"sweep", "s.json", "--jobs", "2"}, within(scratch));
+        if (other.code < 0) other = runProgram({"sweep", "s.json", "--jobs", "2"}, in(scratch));
         return 0;
     };
     const Outcome one = runProgram({"sweep", "s.json", "--jobs", "2"}, both);
@@ -244,18 +231,18 @@ TEST(ProgramSweep, AFailedTaskIsReportedAndTriedAgain) {
     const Scratch scratch;
     scratch.file("s.json", R"x({"command": "/bin/sh -c 'test {k} != 2 || test -f go || {{ echo no go >&2; exit 3; }'",
                                "parameters": {"k": [1, 2, 3]}})x");
-    const Outcome failed = runProgram({"sweep", "s.json"}, within(scratch));
+    const Outcome failed = runProgram({"sweep", "s.json"}, in(scratch));
     EXPECT_EQ(failed.code, 1);
     EXPECT_EQ(linesIn(failed.err), 1U) << failed.err;
     EXPECT_NE(failed.err.find("task 1: `/bin/sh` ended with exit status 3: no go; the log is "), std::string::npos) << failed.err;
     EXPECT_NE(failed.out.find("2 of 3 tasks have ended, 1 failed"), std::string::npos) << failed.out;
     EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 3U);
-    EXPECT_EQ(textAt(scratch, "s/tasks/1.part/log.txt"), "no go\n");
+    EXPECT_EQ(scratch.text("s/tasks/1.part/log.txt"), "no go\n");
     scratch.file("go", "go");
-    EXPECT_EQ(runProgram({"sweep", "s.json"}, within(scratch)).code, 0);
+    EXPECT_EQ(runProgram({"sweep", "s.json"}, in(scratch)).code, 0);
     EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 4U);
     scratch.file("missing.json", R"({"command": "/usr/bin/env nowhere.program"})");
-    expectRefusal(runProgram({"sweep", "missing.json", "--task", "0"}, within(scratch)), 1, "ended with exit status 127");
+    expectRefusal(runProgram({"sweep", "missing.json", "--task", "0"}, in(scratch)), 1, "ended with exit status 127");
 }
 
 // A script that starts a program: the signal reaches both, and an interrupted task has not failed. The signal is sent to the group, as a
@@ -264,7 +251,7 @@ TEST(ProgramSweep, CtrlCEndsAllThatATaskStarted) {
     const Scratch scratch;
     scratch.file("beat.sh", "while true; do echo >>\"$1/beats\"; sleep 0.02; done\n");
     scratch.file("s.json", R"x({"command": "/bin/bash -c '/bin/bash beat.sh {task} & wait' {k}", "parameters": {"k": [1, 2]}})x");
-    RunOptions options = within(scratch);
+    RunOptions options = in(scratch);
     options.before = [] { (void)::setpgid(0, 0); };
     bool sent = false;
     options.whileRunning = [&](pid_t sweep) {
@@ -288,11 +275,11 @@ TEST(ProgramSweep, CtrlCEndsAllThatATaskStarted) {
 TEST(ProgramSweep, ATaskThatIsHeldElsewhereIsDoneBeforeItReportsSuccess) {
     const Scratch scratch;
     scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code, 0);
     Outcome task;
-    RunOptions options = within(scratch);
+    RunOptions options = in(scratch);
     options.whileRunning = [&](pid_t) {
-        if (task.code < 0 && fs::exists(scratch.path() / "held")) task = runProgram({"sweep", "s.json", "--task", "1"}, within(scratch));
+        if (task.code < 0 && fs::exists(scratch.path() / "held")) task = runProgram({"sweep", "s.json", "--task", "1"}, in(scratch));
         return 0;
     };
     ASSERT_EQ(runCommand({"/usr/bin/flock", "s/tasks/1.lock", "/bin/sh", "-c", "touch held; sleep 0.5"}, options).code, 0);
@@ -304,16 +291,16 @@ TEST(ProgramSweep, ATaskThatIsHeldElsewhereIsDoneBeforeItReportsSuccess) {
 TEST(ProgramSweep, TasksThatEndTogetherAreAllInTheTable) {
     const Scratch scratch;
     scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": {"from": 1, "to": 40, "count": 40}}})");
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
-    ASSERT_EQ(runCommand({"/bin/sh", "-c", "while read -r line; do sh -c \"$line\" & done <s/tasks.txt; wait"}, within(scratch)).code, 0);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code, 0);
+    ASSERT_EQ(runCommand({"/bin/sh", "-c", "while read -r line; do sh -c \"$line\" & done <s/tasks.txt; wait"}, in(scratch)).code, 0);
     EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 41U);
     // Another process has the table: tasks leave it to that one.
-    const std::string before = textAt(scratch, "s/results.csv");
+    const std::string before = scratch.text("s/results.csv");
     for (const char* task : {"7", "8"}) fs::remove_all(scratch.path() / "s/tasks" / task);
-    ASSERT_EQ(runCommand({"/usr/bin/flock", "s/results.next", RIVULET_PROGRAM, "sweep", "s.json", "--task", "7"}, within(scratch)).code, 0);
-    EXPECT_EQ(textAt(scratch, "s/results.csv"), before) << "it was not written without task 8";
-    ASSERT_EQ(runProgram({"sweep", "s.json"}, within(scratch)).code, 0);
-    EXPECT_EQ(textAt(scratch, "s/results.csv"), before);
+    ASSERT_EQ(runCommand({"/usr/bin/flock", "s/results.next", RIVULET_PROGRAM, "sweep", "s.json", "--task", "7"}, in(scratch)).code, 0);
+    EXPECT_EQ(scratch.text("s/results.csv"), before) << "it was not written without task 8";
+    ASSERT_EQ(runProgram({"sweep", "s.json"}, in(scratch)).code, 0);
+    EXPECT_EQ(scratch.text("s/results.csv"), before);
 }
 
 // A table that cannot be written does not hide which tasks failed.
@@ -321,7 +308,7 @@ TEST(ProgramSweep, AFailedTaskIsReportedWithoutTheTable) {
     const Scratch scratch;
     scratch.file("s.json",
                  R"({"command": "/bin/sh -c 'rm s/results.csv; mkdir -p s/results.csv/in_the_way; exit {k}'", "parameters": {"k": [1]}})");
-    const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
+    const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
     EXPECT_EQ(swept.code, 1);
     EXPECT_NE(swept.err.find("task 0: `/bin/sh` ended with exit status 1"), std::string::npos) << swept.err;
     EXPECT_NE(swept.err.find("results.csv"), std::string::npos) << swept.err;
@@ -338,7 +325,7 @@ TEST(ProgramSweep, AHypercubeUsesEachPartOfEachRangeOnce) {
     };
     scratch.file("s.json", sweep(7));
     scratch.file("t.json", sweep(8));
-    for (const char* file : {"s.json", "t.json"}) ASSERT_EQ(runProgram({"sweep", file}, within(scratch)).code, 0);
+    for (const char* file : {"s.json", "t.json"}) ASSERT_EQ(runProgram({"sweep", file}, in(scratch)).code, 0);
     const auto rows = rowsAt(scratch, "s/results.csv");
     ASSERT_EQ(rows.size(), 13U);
     std::set<int> partsOfA, partsOfB;
@@ -352,7 +339,7 @@ TEST(ProgramSweep, AHypercubeUsesEachPartOfEachRangeOnce) {
     EXPECT_EQ(*partsOfA.begin(), 0);
     EXPECT_EQ(partsOfB.size(), 12U);
     EXPECT_EQ(of, (std::map<std::string, int>{{"x", 4}, {"y", 4}, {"z", 4}}));
-    EXPECT_NE(textAt(scratch, "s/results.csv"), textAt(scratch, "t/results.csv"));
+    EXPECT_NE(scratch.text("s/results.csv"), scratch.text("t/results.csv"));
     EXPECT_EQ(rows[1], (std::vector<std::string>{"0", "5.95987408", "0.600808387", "y"}));
 }
 
@@ -361,7 +348,7 @@ TEST(ProgramSweep, ErrorsNamePlaceAndRemedyAndLeaveNothing) {
     scratch.file("small.json", smallScene());
     const auto refused = [&](const std::string& rest, const std::string& mentions) {
         scratch.file("s.json", rest);
-        expectRefusal(runProgram({"sweep", "s.json"}, within(scratch)), 2, mentions);
+        expectRefusal(runProgram({"sweep", "s.json"}, in(scratch)), 2, mentions);
         EXPECT_EQ(scratch.contents(), (std::vector<std::string>{"s.json", "small.json"})) << rest;
     };
     const auto values = [](const std::string& range) {
@@ -393,12 +380,12 @@ TEST(ProgramSweep, ErrorsNamePlaceAndRemedyAndLeaveNothing) {
     refused(R"({"command": "run small.json --out o", "parameters": {"fluid.viscosity": [1, 2]}})", "tasks 0 and 1 both write --out o;");
     refused(R"({"command": "run small.json --stats=a{n}", "parameters": {"n": [1, 2, 1]}})", "tasks 0 and 2 both write --stats a1");
     refused("{", "s.json:1:");
-    expectRefusal(runProgram({"sweep", "none.json"}, within(scratch)), 2, "none.json cannot be read");
+    expectRefusal(runProgram({"sweep", "none.json"}, in(scratch)), 2, "none.json cannot be read");
     scratch.file("s.json", R"({"command": "/bin/true"})");
-    expectRefusal(runProgram({"sweep", "s.json", "--with", "slrum"}, within(scratch)), 2, "did you mean 'slurm'?");
-    expectRefusal(runProgram({"sweep", "s.json", "--task", "1"}, within(scratch)), 2, "the last is 0");
-    expectRefusal(runProgram({"sweep", "s.json", "--output", "."}, within(scratch)), 2, "is no folder of a sweep");
-    RunOptions threads = within(scratch);
+    expectRefusal(runProgram({"sweep", "s.json", "--with", "slrum"}, in(scratch)), 2, "did you mean 'slurm'?");
+    expectRefusal(runProgram({"sweep", "s.json", "--task", "1"}, in(scratch)), 2, "the last is 0");
+    expectRefusal(runProgram({"sweep", "s.json", "--output", "."}, in(scratch)), 2, "is no folder of a sweep");
+    RunOptions threads = in(scratch);
     threads.environment = {{"RIVULET_THREADS", "many"}};
     expectRefusal(runProgram({"list"}, threads), 2, "RIVULET_THREADS must be a number of threads");
 }
@@ -407,29 +394,29 @@ TEST(ProgramSweep, AChangedSweepIsRefusedUnlessItGrew) {
     const Scratch scratch;
     const auto sweep = [&](const std::string& values) {
         scratch.file("s.json", R"({"command": "/bin/sh -c 'echo {k} $$ >{task}/process'", "parameters": {"k": )" + values + "}}");
-        return runProgram({"sweep", "s.json"}, within(scratch));
+        return runProgram({"sweep", "s.json"}, in(scratch));
     };
     ASSERT_EQ(sweep("[1, 2]").code, 0);
-    const std::string process = textAt(scratch, "s/tasks/1/process");
+    const std::string process = scratch.text("s/tasks/1/process");
     expectRefusal(sweep("[1, 3]"), 2, "has changed since its tasks");
     expectRefusal(sweep("[1]"), 2, "has changed since its tasks");
     const Outcome grown = sweep("[1, 2, 3]");
     ASSERT_EQ(grown.code, 0) << grown.err;
     EXPECT_NE(grown.out.find("3 of 3 tasks have ended, 2 of them before"), std::string::npos) << grown.out;
-    EXPECT_EQ(textAt(scratch, "s/tasks/1/process"), process);
-    EXPECT_EQ(linesIn(textAt(scratch, "s/tasks.txt")), 3U);
+    EXPECT_EQ(scratch.text("s/tasks/1/process"), process);
+    EXPECT_EQ(linesIn(scratch.text("s/tasks.txt")), 3U);
 }
 
 TEST(ProgramSweep, TheListOfTasksFollowsTheOptions) {
     const Scratch scratch;
     scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, within(scratch)).code, 0);
-    EXPECT_EQ(textAt(scratch, "s/tasks.txt").find("--threads"), std::string::npos);
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--threads", "3", "--dry-run"}, within(scratch)).code, 0);
-    EXPECT_NE(textAt(scratch, "s/tasks.txt").find("--task 1 --threads 3\n"), std::string::npos);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code, 0);
+    EXPECT_EQ(scratch.text("s/tasks.txt").find("--threads"), std::string::npos);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--threads", "3", "--dry-run"}, in(scratch)).code, 0);
+    EXPECT_NE(scratch.text("s/tasks.txt").find("--task 1 --threads 3\n"), std::string::npos);
     fs::rename(scratch.path() / "s.json", scratch.path() / "t.json");
-    ASSERT_EQ(runProgram({"sweep", "t.json", "--output", "s", "--dry-run"}, within(scratch)).code, 0);
-    EXPECT_NE(textAt(scratch, "s/tasks.txt").find("/t.json --output"), std::string::npos);
+    ASSERT_EQ(runProgram({"sweep", "t.json", "--output", "s", "--dry-run"}, in(scratch)).code, 0);
+    EXPECT_NE(scratch.text("s/tasks.txt").find("/t.json --output"), std::string::npos);
 }
 
 TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {
@@ -437,7 +424,7 @@ TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {
     scratch.file("small.json", smallScene());
     scratch.file("s.json",
                  R"({"command": "run small.json --frames 2 --no-render --backend cpu", "parameters": {"fluid.viscosity": [0.1, 1]}})");
-    const Outcome swept = runProgram({"sweep", "s.json"}, within(scratch));
+    const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
     ASSERT_EQ(swept.code, 0) << swept.err;
     EXPECT_EQ(swept.out.find("no task"), std::string::npos) << swept.out;
     EXPECT_FALSE(fs::exists(scratch.path() / "out"));
@@ -446,7 +433,7 @@ TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {
     EXPECT_NE(std::find(rows[0].begin(), rows[0].end(), "energy.kinetic"), rows[0].end());
     // Programs without numbers: a notice, because the table has none.
     scratch.file("t.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
-    const Outcome without = runProgram({"sweep", "t.json"}, within(scratch));
+    const Outcome without = runProgram({"sweep", "t.json"}, in(scratch));
     EXPECT_NE(without.out.find("no task has left a stats.json"), std::string::npos) << without.out;
 }
 
@@ -459,7 +446,7 @@ TEST(ProgramSweep, AFolderIsThatOfItsScenes) {
     const auto swept = [&](const char* folder, bool dry = true) {
         std::vector<std::string> words = {"sweep", std::string(folder) + "/s.json", "--output", "s"};
         if (dry) words.emplace_back("--dry-run");
-        return runProgram(words, within(scratch));
+        return runProgram(words, in(scratch));
     };
     ASSERT_EQ(swept("a").code, 0);
     // The same sweep beside another scene of the same name, and a scene that was edited.
@@ -469,7 +456,7 @@ TEST(ProgramSweep, AFolderIsThatOfItsScenes) {
     expectRefusal(swept("b"), 2, "b/small.json is not the file that the tasks in ");
     scratch.file("a/small.json", edited);
     expectRefusal(swept("a"), 2, "a/small.json is not the file that the tasks in ");
-    expectRefusal(runProgram({"sweep", "a/s.json", "--output", "s", "--task", "0"}, within(scratch)), 2, "is not the file that");
+    expectRefusal(runProgram({"sweep", "a/s.json", "--output", "s", "--task", "0"}, in(scratch)), 2, "is not the file that");
     fs::remove(scratch.path() / "a/small.json");
     expectRefusal(swept("a"), 2, "small.json cannot be read: it does not exist; restore it");
     // A folder that was moved with its scenes.
@@ -479,7 +466,7 @@ TEST(ProgramSweep, AFolderIsThatOfItsScenes) {
     ASSERT_EQ(moved.code, 0) << moved.err;
     EXPECT_EQ(rowsAt(scratch, "s/results.csv").size(), 9U);
     // Another version.
-    std::string origin = textAt(scratch, "s/origin.json");
+    std::string origin = scratch.text("s/origin.json");
     const size_t at = origin.find(RIVULET_VERSION);
     ASSERT_NE(at, std::string::npos);
     scratch.file("s/origin.json", origin.replace(at, std::string(RIVULET_VERSION).size(), "0.0.9"));
@@ -491,15 +478,15 @@ TEST(ProgramSweep, TasksDoNotDependOnTheFileThatTheyWereMadeFrom) {
     const Scratch scratch;
     scratch.file("s.json", R"({"command": "/bin/cp beside.txt {task}/{k}.txt", "parameters": {"k": [1, 2, 3]}})");
     scratch.file("beside.txt", "beside");
-    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "out/s", "--dry-run"}, within(scratch)).code, 0);
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "out/s", "--dry-run"}, in(scratch)).code, 0);
     scratch.file("s.json", "{ edited");
     for (const char* task : {"0", "2"}) {
-        const Outcome ran = runProgram({"sweep", "s.json", "--output", "out/s", "--task", task}, within(scratch));
+        const Outcome ran = runProgram({"sweep", "s.json", "--output", "out/s", "--task", task}, in(scratch));
         EXPECT_EQ(ran.code, 0) << ran.err;
         fs::remove(scratch.path() / "s.json");
     }
-    EXPECT_EQ(textAt(scratch, "out/s/tasks/2/3.txt"), "beside");
-    expectRefusal(runProgram({"sweep", "s.json", "--output", "out/s", "--task", "3"}, within(scratch)), 2, "the last is 2");
+    EXPECT_EQ(scratch.text("out/s/tasks/2/3.txt"), "beside");
+    expectRefusal(runProgram({"sweep", "s.json", "--output", "out/s", "--task", "3"}, in(scratch)), 2, "the last is 2");
 }
 
 }  // namespace

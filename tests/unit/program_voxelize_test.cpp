@@ -31,12 +31,6 @@ test::Mesh joined(test::Mesh a, const test::Mesh& b) {
     return a;
 }
 
-RunOptions in(const Scratch& scratch) {
-    RunOptions options;
-    options.folder = scratch.path();
-    return options;
-}
-
 Json::Value readJson(const fs::path& path) {
     std::ifstream stream(path);
     Json::Value value;

@@ -14,21 +14,13 @@ import numpy as np
 import rivulet.fit
 
 import shear_wave
+from refusals import refused
 
 WAVE = dict(series=shear_wave.amplitude, start=shear_wave.start, frame=1 / 60, evaluations=17)
 
 
 def wave(folder, low=2e-3, high=5e-2, nu=0.008, **more):
     return rivulet.fit.fit(shear_wave.SCENE, {"fluid.viscosity": (low, high, "log")}, shear_wave.decay(nu, 0.2), folder=folder, **{**WAVE, **more})
-
-
-def refused(work, *words):
-    try:
-        work()
-    except rivulet.BadInput as error:
-        assert all(word in str(error) for word in words), error
-    else:
-        raise AssertionError(f"not refused: {words}")
 
 
 # Changes of a FIT.json that is right, and words of the sentence with which each is refused.

@@ -9,18 +9,11 @@ import numpy as np
 import rivulet
 from rivulet._off_screen import OffScreen
 
+from refusals import refused
+
 POOL = {"fluid": {"spacing": 0.04, "box": {"max": [1, 0.6, 1]}, "blocks": [{"max": [1, 0.32, 1]}]}}
 EYE, AT = (0.5, 1.6, 2.4), (0.5, 0.2, 0.5)
 SIZE = WIDTH, HEIGHT = 240, 160
-
-
-def refused(work, *words):
-    try:
-        work()
-    except rivulet.BadInput as error:
-        assert all(word in str(error) for word in words), error
-    else:
-        raise AssertionError(f"not refused: {words}")
 
 
 try:

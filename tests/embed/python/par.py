@@ -10,17 +10,10 @@ import time
 import numpy as np
 import rivulet
 
+from refusals import refused
+
 DROP = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1.5, 1]}, "blocks": [{"min": [0.3, 1, 0.3], "max": [0.7, 1.4, 0.7]}]}}
 CALM = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1, 1]}, "blocks": [{"max": [1, 0.5, 1]}]}}
-
-
-def refused(work, *words, kind=rivulet.BadInput):
-    try:
-        work()
-    except kind as error:
-        assert all(word in str(error) for word in words), error
-    else:
-        raise AssertionError(f"not refused: {words}")
 
 
 def bits(world):

@@ -1,15 +1,12 @@
 #!/usr/bin/env bash
 # run.sh BUILD: data sets of recordings, read by h5py, zarr and xarray: the same numbers as in CSV files of the same run, bit for bit; and the
-# pages' example, a sweep whose runs are loaded together. Exit 77: a reader is not installed, and RIVULET_TEST_DEVICES does not say that all must be.
+# pages' example, a sweep whose runs are loaded together. Exit 77: a reader is not installed (modules.sh).
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 root="$here/../../.."
 program="$(cd "$1" && pwd)/bin/rivulet"
-/usr/bin/python3 -c 'import h5py, netCDF4, numpy, xarray, zarr' 2>/dev/null || {
-    echo "skipped: python3-h5py, python3-netcdf4, python3-xarray or python3-zarr is not installed"
-    [ -n "${RIVULET_TEST_DEVICES:-}" ] && exit 1
-    exit 77
-}
+. "$here/../modules.sh"
+need_modules h5py netCDF4 numpy xarray zarr
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 cd "$work"

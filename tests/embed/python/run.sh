@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # run.sh BUILD: the package rivulet from an install prefix, which finds its library by itself; and the example that plots a dam break, whose front must
-# be that of inviscid flow (within 5 %), as fast as what was measured in 1952 (within 5 %). Exit 77: NumPy or Matplotlib is not installed.
+# be that of inviscid flow (within 5 %), as fast as what was measured in 1952 (within 5 %). Exit 77: a module is not installed (modules.sh).
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 root="$here/../../.."
-/usr/bin/python3 -c 'import numpy, matplotlib' 2>/dev/null || { echo "skipped: python3-numpy or python3-matplotlib is not installed"; exit 77; }
+. "$here/../modules.sh"
+need_modules matplotlib numpy
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 cmake --install "$1" --prefix "$work/prefix" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # wheel.sh BUILD [PAGE]: pip makes a wheel, of which import works in a fresh environment, from another folder; also from the source distribution.
 # BUILD: a build whose librivulet.so is packed, or `full`: CMake builds it, as for a user (minutes). PAGE: a folder that the pictures of
-# docs/python.md, made with the wheel, are left in. Nothing is downloaded. Exit 77: NumPy, pip, setuptools, wheel or venv is not installed.
+# docs/python.md, made with the wheel, are left in. Nothing is downloaded. Exit 77: a module is not installed (modules.sh).
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 root="$(cd "$here/../../.." && pwd)"
-/usr/bin/python3 -c 'import importlib.util as i; assert all(map(i.find_spec, ("numpy", "pip", "setuptools", "wheel", "venv", "ensurepip")))' 2>/dev/null ||
-    { echo "skipped: python3-numpy, -pip, -setuptools, -wheel or -venv is not installed"; exit 77; }
+. "$here/../modules.sh"
+need_modules numpy pip setuptools wheel venv ensurepip
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 unset RIVULET_LIBRARY PYTHONPATH

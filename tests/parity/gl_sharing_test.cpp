@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <rivulet_glad/gl.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <thread>
@@ -354,6 +355,31 @@ TEST_F(GlSharingTest, AnotherDeviceIsNotTakenForTheLastOne) {
         EXPECT_EQ(played.live, static_cast<int>(played.together));
         EXPECT_EQ(played.outlived, 0);
     }
+}
+
+// The driver's own functions: of a GPU, or of tests/sharing, which poisons what the other side owns and ends the process at a wrong use.
+TEST_F(GlSharingTest, ADriverThatSharesIsUsedFromTheFirstFrameToTheLast) {
+    auto made = makeClDevice(ShaderFiles::developer(), {}, {.gl = gpu::currentContext()});
+    ASSERT_TRUE(made);
+    std::unique_ptr<Device> device = std::move(*made);
+    if (!device->glShare().by) {
+        ASSERT_EQ(std::getenv("RIVULET_SHARING"), nullptr) << device->glShare().whyNot;
+        GTEST_SKIP() << device->glShare().whyNot;
+    }
+    FluidUpload upload;
+    std::unique_ptr<Session> session;
+    for (const int sides : {4, 9, 6}) {  // buffers grow and are wrapped anew
+        session = sessionOn(*device, block(sides));
+        for (int frame = 0; frame < 4; ++frame) {
+            session->step(1.0 / 60, true);
+            const auto view = upload.view(session->world(), session->scene().look);
+            ASSERT_TRUE(view);
+            expectDrawn(session->world(), *view);
+            EXPECT_STREQ(upload.facts().way, "shared with OpenCL") << upload.facts().why;
+        }
+    }
+    session.reset();
+    device.reset();  // before the buffers that were wrapped
 }
 
 }  // namespace

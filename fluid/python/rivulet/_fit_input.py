@@ -98,7 +98,7 @@ def _rows(path: pathlib.Path, columns: list[int], factors: tuple[float, float]) 
     rows: list[list[float]] = []
     named = False
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             for at, line in enumerate(file, 1):
                 if not line.strip() or line.startswith("#"):
                     continue
@@ -106,7 +106,8 @@ def _rows(path: pathlib.Path, columns: list[int], factors: tuple[float, float]) 
                 try:
                     rows.append([float(cells[column]) * factor for column, factor in zip(columns, factors)])
                 except (ValueError, IndexError):
-                    if rows or named:
+                    # A name does not begin as a number does: 0.O2 is a mistake of a typist.
+                    if rows or named or any(cell.strip(' "')[:1] in tuple("0123456789.+-") for cell in cells):
                         raise BadInput(f"{path}:{at}: columns {columns[0]} and {columns[1]} are not two numbers: correct the line, or give others "
                                        "with columns, [time, value], counted from 0") from None
                     named = True

@@ -68,7 +68,7 @@ def front(positions: ArrayLike, spacing: float) -> float:
     if not len(at) or not spacing > 0:
         raise BadInput(f"{len(at)} particles {spacing:g} m apart have no front: give at least one, and a spacing above 0")
     near = at[at[:, 1] < at[:, 1].min() + 2 * spacing]
-    strip = (near[:, 2] / spacing).astype(int)
+    strip = np.floor(near[:, 2] / spacing)
     return float(np.median([near[strip == k, 0].max() for k in np.unique(strip)]) + 0.5 * spacing)
 
 
@@ -196,14 +196,14 @@ class _Enough(Exception):
     """A method has used the runs that it may make."""
 
 
-def _kept(path: pathlib.Path) -> Curve | None:
-    """A run that was kept. None: there is none, or its file is damaged."""
+def _kept(path: pathlib.Path, seconds: float) -> Curve | None:
+    """A run that was kept. None: there is none, it is shorter than that, or its file is damaged."""
     try:
         curve: Curve = json.loads(path.read_text(encoding="utf-8"))
         times, values = np.array(curve, dtype=float)
     except (OSError, ValueError, TypeError):
         return None
-    return curve if len(times) == len(values) > 0 else None
+    return curve if len(times) == len(values) > 0 and times[-1] >= seconds else None
 
 
 def _cores() -> int:
@@ -229,7 +229,7 @@ class _Search:
     def path(self, values: Mapping[str, float]) -> pathlib.Path:
         """Of the kept run with these values."""
         what: dict[str, Any] = {**self.job, "settings": {**self.job["settings"], **values}, "version": version()}
-        del what["threads"]  # results do not depend on it
+        del what["threads"], what["seconds"]  # values do not depend on them
         for name in ("series", "start"):  # a function that was changed is another one
             if what[name] and what[name] not in SERIES:
                 what[name] += hashlib.sha256(pathlib.Path(what[name].rpartition(":")[0]).read_bytes()).hexdigest()
@@ -260,7 +260,7 @@ class _Search:
         if len(known | {tuple(values.values()) for values in wanted}) > self.most:
             raise _Enough
         paths = [self.path(values) for values in wanted]
-        kept = [_kept(path) is not None for path in paths]
+        kept = [_kept(path, self.job["seconds"]) is not None for path in paths]
         missing = {path: values for path, values, there in zip(paths, wanted, kept) if not there}
         threads = max(1, _cores() // max(1, min(self.jobs, len(missing))))
         work = {path: {**self.job, "threads": threads, "settings": {**self.job["settings"], **values}} for path, values in missing.items()}
@@ -275,7 +275,7 @@ class _Search:
                 _write(path, json.dumps(_run(one)))
         results = []
         for values, path, cached in zip(wanted, paths, kept):
-            curve = _kept(path)
+            curve = _kept(path, self.job["seconds"])
             if curve is None:
                 raise Error(f"{path} cannot be read, though it has just been written: is the disk full?")
             residual, shift = self.residual(curve)
@@ -347,7 +347,7 @@ class Fit:
 
     best: dict[str, float]  #: values by the parameter's path, of the point with the least residual
     residual: float  #: its rms difference from the measured curve, in the curve's unit
-    relative: float  #: the same, divided by the range of the curve
+    relative: float  #: the same, divided by the range of the curve; NaN: the curve is constant
     shift: float  #: s: time of the run = time of the measurement + shift
     error: dict[str, float | None]  #: standard error by the parameter's path, in its unit; None: it cannot be determined
     interval: dict[str, tuple[float, float]]  #: lowest and highest value that fit as well as the best, within one standard error
@@ -362,7 +362,8 @@ class Fit:
         best = min(search.points, key=lambda p: p.residual)
         self.best, self.residual, self.shift = best.values, best.residual, best.shift
         self._ranges, self.measured = search.ranges, search.measured
-        self.relative = best.residual / max(float(np.ptp(search.measured[:, 1])), 1e-300)
+        height = float(np.ptp(search.measured[:, 1]))
+        self.relative = best.residual / height if height > 0 else math.nan
         self.times, self.values = (np.array(part) for part in search.curves[tuple(best.values.values())])
         self.error, self.interval, self.notes = {}, {}, []
         self._uncertainty()
@@ -373,7 +374,8 @@ class Fit:
         places = np.array([[r.place(p.values[r.name]) for r in self._ranges] for p in self.points])
         squares = n * np.array([p.residual for p in self.points]) ** 2
         best = int(np.argmin(squares))
-        rise = squares[best] / max(n - free, 1)  # of the sum of squares, at one standard error
+        exact = n * (1e-9 * float(np.abs(self.measured[:, 1]).max())) ** 2  # as of numbers that were rounded
+        rise = max(squares[best], exact, 1e-300) / max(n - free, 1)  # of the sum of squares, at one standard error
         curvature, noise = self._curvature(places, squares, best, rise)
         level = rise + 2 * noise  # runs differ among themselves, as particles do
         for k, r in enumerate(self._ranges):
@@ -443,7 +445,8 @@ class Fit:
             lines.append(f"{name} = {value:.4g}{about}")
         late = "later" if self.shift > 0 else "earlier"
         shift = f"; the run is {abs(self.shift):.3g} s {late} than the measurement" if self.shift else ""
-        lines.append(f"rms difference {self.residual:.3g}, {100 * self.relative:.2g} % of the curve's range{shift}")
+        share = "" if math.isnan(self.relative) else f", {100 * self.relative:.2g} % of the curve's range"
+        lines.append(f"rms difference {self.residual:.3g}{share}{shift}")
         return "\n".join(lines + self.notes)
 
     def save(self, folder: Path) -> None:
@@ -451,7 +454,7 @@ class Fit:
         that exists. Error: they cannot be written."""
         folder = pathlib.Path(folder)
         _write(folder / "result.json", json.dumps({"best": self.best, "error": self.error, "interval": self.interval, "residual": self.residual,
-                                                   "relative": self.relative, "shift": self.shift, "notes": self.notes}, indent=2) + "\n")
+                                                   "relative": None if math.isnan(self.relative) else self.relative, "shift": self.shift, "notes": self.notes}, indent=2) + "\n")
         text = io.StringIO()
         rows = csv.writer(text)
         rows.writerow([*self.best, "residual", "shift"])
@@ -461,10 +464,9 @@ class Fit:
     def plot(self, path: Path, label: str = "", unit: str = "") -> None:
         """Writes a picture (PNG, or what the ending of `path` says): the measured curve with the best run, and the residual over each parameter,
         with the interval shaded. label, unit: of the curve's axis. Needs Matplotlib."""
-        import matplotlib
-        matplotlib.use("Agg")
-        import matplotlib.pyplot as plt
-        figure, axes = plt.subplots(1, 1 + len(self._ranges), figsize=(5.2 + 3.8 * len(self._ranges), 4.2), dpi=110, layout="constrained")
+        from matplotlib.figure import Figure  # without pyplot, whose open figures and back end are the user's
+        figure = Figure(figsize=(5.2 + 3.8 * len(self._ranges), 4.2), dpi=110, layout="constrained")
+        axes = figure.subplots(1, 1 + len(self._ranges))
         axes[0].plot(self.times, self.values, color="#1769aa", linewidth=2, label=", ".join(f"{n} = {v:.3g}" for n, v in self.best.items()))
         axes[0].plot(self.measured[:, 0] + self.shift, self.measured[:, 1], "o", color="#c0392b", markersize=5, label="measured")
         axes[0].set(xlabel="time (s)", ylabel=f"{label} ({unit})" if unit else label)
@@ -478,7 +480,6 @@ class Fit:
         for axis in axes:
             axis.grid(color="0.92")
         figure.savefig(path)
-        plt.close(figure)
 
 
 def fit(scene: Mapping[str, Any] | Path, parameters: Mapping[str, Sequence[Any]], measured: ArrayLike, series: Series | str, *,

@@ -2,6 +2,7 @@
 import contextlib
 import io
 import json
+import math
 import os
 import pathlib
 import resource
@@ -10,6 +11,8 @@ import subprocess
 import sys
 import time
 
+import matplotlib
+import matplotlib.pyplot as pyplot
 import numpy as np
 import rivulet.fit
 
@@ -68,6 +71,8 @@ def main():
     block = np.stack(np.meshgrid(*(np.arange(0.05, side, 0.1) for side in (0.5, 0.3, 1)), indexing="ij"), axis=-1).reshape(-1, 3)
     for low in (0, -2, 7):
         assert abs(rivulet.fit.front(np.vstack([block, [[3, 0.05, 0.45]]]) + [0, low, 0], 0.1) - 0.5) < 1e-6
+    rows = np.array([[1, 0, -0.9], [2, 0, -0.1], [4, 0, 0.1], [8, 0, 0.9]])  # one strip on each side of z = 0
+    assert rivulet.fit.front(rows, 1.0) == 0.5 * (2 + 8) + 0.5
     refused(lambda: rivulet.fit.front(np.zeros((0, 3)), 0.1), "0 particles", "at least one")
 
     # The theory's viscosity, within 3 %; the interval is about the value, and the runs that ended are kept.
@@ -79,6 +84,21 @@ def main():
     # Another curve with the same runs: no run is made twice.
     wave("wave", nu=0.02)
     assert all(path.stat().st_mtime_ns == when for path, when in kept.items())
+    # A shorter curve, too; a longer one needs longer runs.
+    scan = rivulet.fit.SCAN
+    shorter = rivulet.fit.fit(shear_wave.SCENE, {"fluid.viscosity": (2e-3, 5e-2, "log")}, shear_wave.decay(0.008, 0.1), folder="wave", **WAVE)
+    assert all(point.cached for point in shorter.points[:scan]) and all(path.stat().st_mtime_ns == when for path, when in kept.items())
+    longer = rivulet.fit.fit(shear_wave.SCENE, {"fluid.viscosity": (2e-3, 5e-2, "log")}, shear_wave.decay(0.008, 0.22), folder="wave", **WAVE)
+    assert not any(point.cached for point in longer.points[:scan]) and longer.times[-1] >= 0.22
+    kept = {path: path.stat().st_mtime_ns for path in kept}
+    # The curve of one of the runs is met exactly; the backend and the figures of whoever plots stay.
+    own = np.column_stack([found.times, found.values])
+    exact = rivulet.fit.fit(shear_wave.SCENE, {"fluid.viscosity": (0.5 * nu, 1.5 * nu)}, own, folder="wave", **WAVE)  # the middle of the scan
+    assert exact.residual == 0 and exact.best == found.best and exact.error["fluid.viscosity"] < 1e-3 * nu and not exact.notes, str(exact)
+    matplotlib.use("svg")
+    figure = pyplot.figure()
+    exact.plot("exact.png")
+    assert matplotlib.get_backend().lower() == "svg" and pyplot.fignum_exists(figure.number) and os.path.getsize("exact.png") > 10000
 
     # A run whose file is damaged is made again. On a logarithmic scale the interval is printed: it is not symmetric.
     for path in list(kept)[:2]:
@@ -109,6 +129,11 @@ def main():
                               folder="density", **{**WAVE, "evaluations": 13})
     assert any("does not matter" in note for note in density.notes) and density.error["fluid.restDensity"] is None, density.notes
 
+    # A series that is constant, as the curve is: nothing can be told, and nothing fails.
+    flat = rivulet.fit.fit(shear_wave.SCENE, {"fluid.viscosity": (1e-3, 1e-2)}, [[0.02, 1], [0.04, 1], [0.06, 1]], "height", folder="flat",
+                           start=shear_wave.start, frame=1 / 60, evaluations=13)
+    assert math.isnan(flat.relative) and "curve's range" not in str(flat), str(flat)
+
     # Free fall from the command: gravity, and with it a clock that is late.
     drop = {"name": "drop", "fluid": {"spacing": 0.05, "gravity": [0, -9.81, 0], "box": {"max": [1, 1.5, 1]}, "blocks": [{"min": [0.3, 1, 0.3], "max": [0.7, 1.4, 0.7]}]}}
     pathlib.Path("drop.json").write_text(json.dumps(drop))
@@ -122,6 +147,11 @@ def main():
     said = subprocess.run([*command, "fall.json"], capture_output=True, text=True)
     assert said.returncode == 0 and "fluid.gravity.1 = -" in said.stdout and "s later than the measurement" in said.stdout, said
     result = json.loads(pathlib.Path("fall/result.json").read_text())
+    # A mark of Unicode in front of the first row is none of a number; a first row that was mistyped is no row of names.
+    pathlib.Path("mark.csv").write_text(rows.split("\n", 1)[1], encoding="utf-8-sig")
+    pathlib.Path("typo.csv").write_text("2O.000000,119.5\n" + rows)
+    assert len(rivulet.fit.given._rows(pathlib.Path("mark.csv"), [0, 1], (1, 1))) == 14
+    refused(lambda: rivulet.fit.given._rows(pathlib.Path("typo.csv"), [0, 1], (1, 1)), "typo.csv:1", "correct the line")
     # No method makes more runs than it is allowed to.
     for method, most in (("brent", 13), ("nelder-mead", 11), ("differential evolution", 14)):
         pathlib.Path("few.json").write_text(json.dumps({**asked, "evaluations": most, "method": method, "tolerance": 1e-6}))

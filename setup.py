@@ -1,5 +1,5 @@
 """Builds librivulet.so by CMake and puts it into the Python package. The version is that of CMakeLists.txt; pyproject.toml has the rest.
-In the environment: CMAKE_ARGS, more options for CMake, for example -DRIVULET_OPENCL=OFF; RIVULET_LIBRARY, the path of a librivulet.so that is
+In the environment: CMAKE_ARGS, more options for CMake, for example -DRIVULET_OPENCL=OFF; RIVULET_PREBUILT, the path of a librivulet.so that is
 built already, which is then taken."""
 import os
 import pathlib
@@ -23,7 +23,7 @@ class Library(build_ext):
     def build_extension(self, extension):
         target = pathlib.Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(os.environ.get("RIVULET_LIBRARY") or self.library(), target)
+        shutil.copyfile(os.environ.get("RIVULET_PREBUILT") or self.library(), target)
 
     def library(self):
         """Builds it; returns its path."""

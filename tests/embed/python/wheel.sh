@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 unset RIVULET_LIBRARY PYTHONPATH
 export PYTHONDONTWRITEBYTECODE=1 MPLCONFIGDIR="$work" MPLBACKEND=Agg PIP_NO_INDEX=1 PIP_DISABLE_PIP_VERSION_CHECK=1
 quietly() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log"; echo "this failed: $*"; exit 1; }; }
-quiet_build() { if [ "$build" = full ]; then quietly "$@"; else RIVULET_LIBRARY="$build/librivulet.so" quietly "$@"; fi; }
+quiet_build() { if [ "$build" = full ]; then quietly "$@"; else RIVULET_PREBUILT="$build/librivulet.so" quietly "$@"; fi; }
 build="$1"
 [ "$build" = full ] || build="$(cd "$build" && pwd)"
 

@@ -64,6 +64,9 @@ with tempfile.TemporaryDirectory() as folder:
     error = refusal(sweep.TaskError, lambda: sweep.run("s.json", Elsewhere(), "apart", program=program))
     assert len(error.failures) == 6 and "use a folder that all workers share" in str(error), error
     assert "no task of apart has ended" in str(refusal(ValueError, lambda: sweep.results("apart")))
+    pathlib.Path("apart/results.csv").write_text("task,k\n")  # as after a sweep in which every task failed
+    assert "no task of apart has ended" in str(refusal(ValueError, lambda: sweep.results("apart")))
+    pathlib.Path("apart/results.csv").unlink()
     path, lines = sweep.prepare("s.json", "other", program=program, threads=2)
     assert path == pathlib.Path("other").absolute() and len(lines) == 6 and lines[5][-4:] == ["--task", "5", "--threads", "2"], lines
 print("sweeps from Python: in order")

@@ -58,6 +58,8 @@ def prepare(path: _Path, output: _Path | None = None, *, threads: int = 1, progr
     except FileNotFoundError:
         raise FileNotFoundError(f"the program {program} is not there; build or install rivulet, which pip does not, "
                                 "and name its path as `program`") from None
+    except PermissionError:
+        raise PermissionError(f"the program {program} may not be run; name the path of rivulet as `program`") from None
     if done.returncode != 0:
         raise ValueError(_sentence(done))
     return folder, [shlex.split(line) for line in (folder / "tasks.txt").read_text().splitlines()]
@@ -103,10 +105,12 @@ def results(folder: _Path) -> dict[str, npt.NDArray[Any]]:
     NaN where a task has no value; other columns are texts. pandas.DataFrame(results(folder)) makes a table of it. Raises ValueError before the
     first task has ended."""
     path = pathlib.Path(folder) / "results.csv"
-    if not path.exists() and (path.parent / "sweep.json").exists():
-        raise ValueError(f"no task of {folder} has ended, so that there is no results.csv; run the sweep")
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
+    rows = []
+    if path.exists() or not (path.parent / "sweep.json").exists():
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    if len(rows) < 2:
+        raise ValueError(f"no task of {folder} has ended, so that there are no results; run the sweep")
     columns = {}
     for k, name in enumerate(rows[0]):
         cells = [row[k] for row in rows[1:]]

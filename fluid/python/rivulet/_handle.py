@@ -65,6 +65,16 @@ class Owned:
             self.parent.release()
 
 
+    def let_go(self) -> None:
+        """release(), where nobody can call it again: later, if its OpenGL context is in use on another thread."""
+        try:
+            self.release()
+        except Error:
+            if self.gl is None:
+                raise
+            self.gl.later(self.release)
+
+
 class Lease:
     """Keeps a handle while arrays refer to its memory."""
 
@@ -73,7 +83,7 @@ class Lease:
         owned.use()
 
     def __del__(self) -> None:
-        self.owned.release()
+        self.owned.let_go()
 
 
 Self = TypeVar("Self", bound="Handle")
@@ -123,4 +133,6 @@ class Handle:
         raise TypeError(f"a {type(self).__name__} cannot be copied or pickled: {self._instead}")
 
     def __del__(self) -> None:
-        self.close()
+        if self._owned is not None:
+            self._owned.let_go()
+            self._owned = None

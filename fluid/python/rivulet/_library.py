@@ -25,12 +25,20 @@ class BadInput(Error, ValueError):
 
 def _load() -> ctypes.CDLL:
     here, prefix = os.path.dirname(os.path.abspath(__file__)), "../../../.."  # of share/rivulet/python/rivulet
-    places = [os.environ.get("RIVULET_LIBRARY")]
-    places += [os.path.join(here, folder, "librivulet.so") for folder in ("", "../../lib", prefix + "/lib", prefix + "/lib64")]
+    named = os.environ.get("RIVULET_LIBRARY")
+    if named:
+        try:
+            return ctypes.CDLL(named)
+        except OSError as error:
+            raise ImportError(f"the environment variable RIVULET_LIBRARY names {named}, which cannot be loaded: {error}; correct or unset it") from None
+    places = [os.path.join(here, folder, "librivulet.so") for folder in ("", "../../lib", prefix + "/lib", prefix + "/lib64")]
     places += sorted(glob.glob(os.path.join(here, prefix, "lib", "*", "librivulet.so")))  # lib/x86_64-linux-gnu
     for place in places:
-        if place and os.path.exists(place):
-            return ctypes.CDLL(place)  # which lets other threads of Python run during a call
+        if os.path.exists(place):
+            try:
+                return ctypes.CDLL(place)  # which lets other threads of Python run during a call
+            except OSError as error:
+                raise ImportError(f"{place} cannot be loaded: {error}; install the package again") from None
     found = ctypes.util.find_library("rivulet")
     if found is None:
         raise ImportError("librivulet.so was not found: set the environment variable RIVULET_LIBRARY to its path")
@@ -92,7 +100,8 @@ def version() -> str:
 
 
 # Remedies of the library in C, and the same in Python.
-WORDS = {"set rivulet_context_options.find": "make the Context with off_screen=True, or with find",
+WORDS = {"--device selects": "device selects", "but --backend is": "but backend is", "or use --backend cl": "or set backend to cl",
+         "set rivulet_context_options.find": "make the Context with off_screen=True, or with find",
          "copy them with rivulet_world_particles": "copy them with World.particles()",
          "set rivulet_body.mesh": "give the Body a mesh",
          "a stop is asked with rivulet_context_stop": "a stop is asked with Context.stop()",

@@ -6,7 +6,7 @@ import os
 import threading
 from ctypes import c_char_p, c_int, c_ssize_t, c_uint, c_void_p
 from types import TracebackType
-from typing import Any, Iterator
+from typing import Any, Callable, Iterator
 
 from ._library import Error
 
@@ -70,6 +70,7 @@ class OffScreen:
         _users.add(self._process)
         self._egl, self._context, self._before = _library(), None, threading.local()
         self._functions: dict[str, Any] = {}
+        self._left: list[Callable[[], None]] = []  # work of later()
         for display in self._displays():
             context = self._made(display)
             if context is None:
@@ -121,6 +122,18 @@ class OffScreen:
         """Whether another process made it, from which this one was forked."""
         return self._process != os.getpid()
 
+    def later(self, work: Callable[[], None]) -> None:
+        """Calls work() with the context current: now, or, if that is in use on another thread, as soon as it is not."""
+        try:
+            with self:
+                work()
+        except Error:
+            self._left.append(work)
+
+    def _do_left(self) -> None:
+        while self._left:
+            self._left.pop()()
+
     def __enter__(self) -> OffScreen:
         if self.inherited():  # a driver's threads and locks do not survive a fork: a call could wait for ever
             raise _forked()
@@ -131,10 +144,15 @@ class OffScreen:
         if before[3] != self._context and not egl.eglMakeCurrent(self._display, None, None, self._context):
             egl.eglBindAPI(api)
             raise Error("the OpenGL context of this Context cannot be used here: it is in use on another thread")
-        here.__dict__.setdefault("stack", []).append((api, before))
+        stack = here.__dict__.setdefault("stack", [])
+        stack.append((api, before))
+        if len(stack) == 1:
+            self._do_left()
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        if len(self._before.stack) == 1:
+            self._do_left()
         api, before = self._before.stack.pop()
         if before[3] != self._context:
             self._egl.eglMakeCurrent(*(before if before[3] else (self._display, None, None, None)))

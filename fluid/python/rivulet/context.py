@@ -74,7 +74,7 @@ class Context(Handle):
     def stop(self, stop: bool = True) -> None:
         """Interrupts steps, now and from now on, from any thread. World.step then raises an Error; after an interrupted step the world must
         be reset or restored. stop=False: steps run again."""
-        lib.rivulet_context_stop(self._pointer, int(stop))
+        lib.rivulet_context_stop(self._pointer, whole(stop, 0, 1, "stop"))
 
     def lost(self) -> None:
         """The caller's OpenGL context has ended: from now on no function of OpenGL is called, and what was made from this can be closed."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _structs as c
 from ._handle import Handle
-from ._library import BadInput, Error, address_of, array_of, number_of, struct, vector, whole
+from ._library import BadInput, Error, address_of, array_of, each_of, number_of, of_kind, struct, vector, whole
 from ._off_screen import OffScreen
 
 Array = NDArray[Any]
@@ -196,10 +196,14 @@ class Picture:
         names = (ctypes.c_uint * 2)(self.__dict__.get("_colour", 0), self.__dict__.get("_depth", 0))
         framebuffer = ctypes.c_uint(self.__dict__.get("_framebuffer", 0))
         self._colour = self._depth = self._framebuffer = 0
-        if any(names) and not self._gl.inherited():
-            with self._gl as gl:
-                gl.call("glDeleteFramebuffers", "ip", 1, ctypes.addressof(framebuffer))
-                gl.call("glDeleteTextures", "ip", 2, ctypes.addressof(names))
+        gl = self._gl
+
+        def delete() -> None:
+            gl.call("glDeleteFramebuffers", "ip", 1, ctypes.addressof(framebuffer))
+            gl.call("glDeleteTextures", "ip", 2, ctypes.addressof(names))
+
+        if any(names) and not gl.inherited():
+            gl.later(delete)
 
     def __enter__(self) -> Picture:
         return self
@@ -248,6 +252,10 @@ class Drawn(Handle):
         units_per_metre: of the world that a View's matrix transforms. BadInput: the context has no OpenGL."""
         if not isinstance(camera, (Camera, View)) or not isinstance(picture, (Picture, Target)):
             raise BadInput(f"a world is drawn with a Camera or View into a Picture or Target, not with {camera!r} into {picture!r}")
+        for value, kind, what in ((light, Light, "light"), (shadow, Shadow, "shadow"), (fog, Fog, "fog")):
+            if value is not None:
+                of_kind(value, kind, what)
+        lights = each_of(lights, Light, "lights")
         size = picture.width, picture.height
         view = camera.view(size[0] / size[1]) if isinstance(camera, Camera) else camera
         if isinstance(picture, Picture):

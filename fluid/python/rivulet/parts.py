@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _structs as c
-from ._library import BadInput, address_of, array_of, array_or_none, of_kind, struct, vector, whole
+from ._library import BadInput, address_of, array_of, array_or_none, number_of, of_kind, struct, vector, whole
 
 Array = NDArray[Any]
 _NONE = (0, 0, 0)
@@ -111,7 +111,8 @@ class Mesh(_Given):
                  meets: int = 0) -> None:
         self._keep(locals())
         self.positions, self.uvs = array_of(positions, (-1, 3), "positions"), array_or_none(uvs, (-1, 2), "uvs")
-        whole_numbers = np.asarray(indices)
+        integers = isinstance(indices, np.ndarray) and indices.dtype.kind in "iu"
+        whole_numbers = np.asarray(indices) if integers else array_of(indices, (-1, 3), "indices", np.float64)
         if not (np.mod(whole_numbers, 1) == 0).all() or np.min(whole_numbers, initial=0) < 0 or np.max(whole_numbers, initial=0) >= 2**32:
             raise BadInput("indices must be whole numbers from 0 to 2**32 - 1")
         self.indices = array_of(indices, (-1, 3), "indices", np.uint32)
@@ -171,13 +172,15 @@ def pose_of(position: ArrayLike, rotation: ArrayLike) -> c.Pose:
 
 
 def rows_of(volumes: Sequence[Volume]) -> Array:
+    if not isinstance(volumes, (list, tuple)) or isinstance(volumes, (Box, Sphere)):
+        raise BadInput(f"the volumes are {volumes!r}: give a list of Box and Sphere")
     rows = np.zeros(len(volumes), c.VOLUME)
     for row, volume in zip(rows, volumes):
         if not isinstance(volume, (Box, Sphere)):
             raise BadInput(f"a volume is {volume!r}: give Box or Sphere")
-        row["id"], row["position"] = whole(volume.id, 0, 2**32 - 1, "a volume's id"), volume.position
+        row["id"], row["position"] = whole(volume.id, 0, 2**32 - 1, "a volume's id"), vector(volume.position, 3, "a volume's position")
         if isinstance(volume, Box):
-            row["size"] = volume.size
+            row["size"] = vector(volume.size, 3, "a volume's size")
         else:
-            row["shape"], row["radius"] = 1, volume.radius
+            row["shape"], row["radius"] = 1, number_of(volume.radius, "a volume's radius")
     return rows

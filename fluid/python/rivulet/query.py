@@ -39,6 +39,8 @@ class Queries(Drawn):
         """The same without waiting: then(samples) is called once, at the end of a later call of this world, on backend cpu at the end of this
         one. What it raises comes out of that call. If the world is closed before, it is not called."""
         places = array_of(places, (-1, 3), "places")
+        if not callable(then):
+            raise BadInput(f"then is {then!r}: give a function of the samples")
         raised, done, key = self._raised, self._arrived, object()
 
         def arrived(_: Any, samples: int, count: int) -> None:

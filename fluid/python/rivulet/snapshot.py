@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, Union
 
 from . import _structs as c
 from ._handle import Handle
-from ._library import path_of, struct, whole
+from ._library import of_kind, path_of, struct, whole
 from .draw import Drawn
 
 if TYPE_CHECKING:
@@ -38,15 +38,20 @@ class Snapshot(Drawn):
 
     def take(self, world: World) -> Snapshot:
         """Copies what is drawn of the world now, in place of what the snapshot held; returns the snapshot."""
-        world._call("world_snapshot", self._pointer)
+        _world(world)._call("world_snapshot", self._pointer)
         return self
 
     def replay(self, world: World, path: Path, frame: int) -> Recorded:
         """Puts frame `frame` (from 0) of a file that World.record wrote into the snapshot, with the look and liquid of `world`, which is not
         changed. BadInput: it is no recording, is damaged or has no such frame."""
         recorded = struct(c.Recorded)
-        self._call("snapshot_replay", world._pointer, path_of(path), whole(frame, 0, 2**63 - 1, "frame"), recorded)
+        self._call("snapshot_replay", _world(world)._pointer, path_of(path), whole(frame, 0, 2**63 - 1, "frame"), recorded)
         return Recorded(recorded.frames, recorded.time)
+
+
+def _world(value: World) -> World:
+    from .world import World
+    return of_kind(value, World, "world")
 
 
 class Recording:

@@ -145,7 +145,7 @@ class World(Queries):
 
     def set(self, path: str, value: Any) -> None:
         """Sets a parameter: set("fluid.viscosity", 0.01). BadInput: docs/parameters.md calls it fixed, or does not know it."""
-        text = value if isinstance(value, str) else json.dumps(np.asarray(value).tolist())
+        text = (text_of(value) or b"null").decode()
         self._call("world_set", text_of(f"{path}={text}"))
 
     def stats(self) -> Stats:
@@ -178,7 +178,7 @@ class World(Queries):
 
         if out is None:
             return Particles(**self._copied(lambda room: {name: np.empty(shape, kind) for name, (shape, kind) in kinds(room).items()}))
-        room = len(out.ids)
+        room = len(of_kind(out, Particles, "out").ids)
         for name, (shape, kind) in kinds(room).items():
             room_of(getattr(out, name), shape, "out." + name, kind)
         asked = struct(c.Particles, capacity=room, **{name: address_of(array) for name, array in zip(Particles._fields, out)})
@@ -244,7 +244,7 @@ class World(Queries):
                     dry: Sequence[Mapping[str, Any]] = ()) -> None:
         """Sets all emitters, sinks and dry volumes, each a dict as in the scene; fluid.maxParticles reserves memory for what emitters spawn.
         With another number of emitters or sinks than before, all emitters begin again."""
-        self._call("world_set_sources", text_of({"emitters": list(emitters), "sinks": list(sinks), "dry": list(dry)}))
+        self._call("world_set_sources", text_of({name: each_of(given, dict, name) for name, given in (("emitters", emitters), ("sinks", sinks), ("dry", dry))}))
 
     def add_wall(self, wall: Mesh) -> int:
         """Adds a wall while the world runs; returns its id. It is baked beside the frames, 0.1 to 5 s, and acts from a later step on. Walls
@@ -351,6 +351,8 @@ class World(Queries):
 
     def set_state(self, state: bytes) -> None:
         """Restores what state() returned, as restore() does."""
+        if not isinstance(state, (bytes, bytearray, memoryview)):
+            raise BadInput(f"the state is {state!r}: give the bytes that state() returned")
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "state.rstate")
             with open(path, "wb") as file:

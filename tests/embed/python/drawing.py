@@ -199,6 +199,27 @@ except rivulet.Error as error:
 free.set()
 thread.join()
 world.step(1 / 60)
+# What is dropped while another thread has its OpenGL context is destroyed by the next call that has it.
+with rivulet.Context(backend="cpu", off_screen=True) as own:
+    kept, drop, done = own.world(POOL), threading.Event(), threading.Event()
+    one = own.memory
+    dropped = [own.world(POOL) for _ in range(3)]
+    whole = own.memory
+
+    def draws():
+        with kept._open().gl:
+            drop.set()
+            done.wait()
+
+    thread = threading.Thread(target=draws)
+    thread.start()
+    drop.wait()
+    dropped.clear()
+    assert own.memory == whole > one
+    done.set()
+    thread.join()
+    assert own.memory == one, (own.memory, one)
+    kept.close()
 world.close()
 context.close()
 
@@ -230,6 +251,9 @@ def drawn(_):
 
 
 with rivulet.Context(backend="cpu", off_screen=True) as context, context.world(POOL) as world, context.picture(64, 48) as picture:
+    for wrong in ("light", "fog", "shadow"):
+        refused(lambda wrong=wrong: world.draw(camera, picture, **{wrong: 3}), f"{wrong} is 3")
+    refused(lambda: world.draw(camera, picture, lights=5), "lights is 5")
     world.draw(camera, picture)
     before = world.picture(camera, 64, 48)
     with multiprocessing.get_context("fork").Pool(2) as pool:

@@ -148,6 +148,24 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         refused(lambda: world.sample_later([[0.5, 0.25, 0.5]], fails), "sample", kind=KeyError)
         assert not world._later
 
+    # Wrong arguments are refused by a sentence that names them.
+    three = np.zeros((3, 3))
+    for indices, *words in (("abc", "indices"), (None, "indices"), ([[0], [0, 1]], "indices"), ([[0, 1, 0.5]], "whole numbers")):
+        refused(lambda indices=indices: rivulet.Mesh(three, indices), *words)
+    with context.world(DROP) as world:
+        for work, *words in ((lambda: world.set("fluid.viscosity", object()), "JSON"), (lambda: world.set_state(5), "bytes"),
+                             (lambda: world.set_state("abc"), "bytes"), (lambda: world.particles(5), "out is 5"),
+                             (lambda: world.set_sources(5), "emitters is 5"), (lambda: world.set_sources(dry=[5]), "dry[0]"),
+                             (lambda: world.set_volumes(5), "list of Box"), (lambda: world.set_volumes([rivulet.Box(1, "abc", (1, 1, 1))]), "position"),
+                             (lambda: world.set_volumes([rivulet.Sphere(1, (0, 0, 0), "r")]), "radius"),
+                             (lambda: world.sample_later(three, None), "then is None"), (lambda: context.snapshot().take(None), "world is None"),
+                             (lambda: context.stop("x"), "stop is 'x'"), (lambda: rivulet.Context(backend="cpu", device="3"), "device", "set backend to cl")):
+            refused(work, *words)
+            try:
+                work()
+            except rivulet.BadInput as error:
+                assert "--" not in str(error), error
+
     # Recordings: as many frames as steps, each with its time; a snapshot outlives its world.
     path = os.path.join(sys.argv[1], "fall.rrec")
     with context.world(DROP) as world, context.snapshot() as snapshot:

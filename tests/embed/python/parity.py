@@ -95,8 +95,8 @@ for module in (rivulet, rivulet.fit):
             if (callable(value) or isinstance(value, property)) and not (getattr(value, "__doc__", None) or "").strip():
                 missing.append(f"{module.__name__}.{name}{key and '.' + key} has no docstring")
 # The words of C that the package replaces in a sentence are still those of the library.
-sentences = "".join(path.read_text() for path in pathlib.Path(root, "fluid/capi").glob("*.cpp"))
-missing += [f"WORDS of _library.py has {words!r}, which no source of fluid/capi says" for words in _library.WORDS if words not in sentences]
+sentences = "".join(path.read_text() for path in [*pathlib.Path(root, "fluid/capi").glob("*.cpp"), pathlib.Path(root, "fluid/render/backend.cpp")])
+missing += [f"WORDS of _library.py has {words!r}, which no source of fluid/capi and not fluid/render/backend.cpp says" for words in _library.WORDS if words not in sentences]
 for each in missing:
     print(each)
 print(f"{len(functions)} functions and {len(structs)} structs of rivulet.h were compared, {len(offsets)} offsets and sizes")

@@ -4,6 +4,8 @@
 #include <rivulet_glad/gl.h>
 
 #include <algorithm>
+#include <memory>
+#include <new>
 #include <utility>
 
 #include "engine/core/assert.h"
@@ -22,6 +24,26 @@ size_t paddedBytes(size_t bytes) { return std::max<size_t>((bytes + 15) / 16 * 1
 }  // namespace
 
 Result<Buffer> Buffer::create(size_t bytes, BufferKind kind) {
+    if (kind == BufferKind::plain) return make(bytes, kind, nullptr);
+    // Zeros from the host: the GPU would have to end a clear before the host may write.
+    return makeOf({}, bytes, kind);
+}
+
+Result<Buffer> Buffer::fromBytes(std::span<const std::byte> bytes) {
+    if (bytes.size() == paddedBytes(bytes.size())) return make(bytes.size(), BufferKind::plain, bytes.data());
+    return makeOf(bytes, bytes.size(), BufferKind::plain);
+}
+
+// Of these bytes, and zeros behind them.
+Result<Buffer> Buffer::makeOf(std::span<const std::byte> first, size_t bytes, BufferKind kind) {
+    const std::unique_ptr<std::byte[]> padded(new (std::nothrow) std::byte[paddedBytes(bytes)]());
+    if (!padded) return failed(fmt::format("the host is out of memory: {} bytes for a buffer", bytes));
+    std::ranges::copy(first, padded.get());
+    return make(bytes, kind, padded.get());
+}
+
+// `content`: of the padded size; null: it is cleared on the GPU.
+Result<Buffer> Buffer::make(size_t bytes, BufferKind kind, const std::byte* content) {
     clearGlErrors();
     Buffer buffer;
     GLuint name = 0;
@@ -31,11 +53,10 @@ Result<Buffer> Buffer::create(size_t bytes, BufferKind kind) {
     const GLbitfield mapping = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
     const GLbitfield flags = GL_DYNAMIC_STORAGE_BIT | (kind == BufferKind::mapped ? mapping : 0);
     const size_t padded = paddedBytes(bytes);
-    glNamedBufferStorage(name, static_cast<GLsizeiptr>(padded), nullptr, flags);
+    glNamedBufferStorage(name, static_cast<GLsizeiptr>(padded), content, flags);
     GLenum error = takeGlError();
     if (error == GL_NO_ERROR) {
-        buffer.fill(0);                                     // drivers that allocate late fail here
-        if (kind == BufferKind::mapped) buffer.endClear();  // the host may write at once
+        if (content == nullptr) buffer.fill(0);  // drivers that allocate late fail here
         if (kind == BufferKind::mapped)
             buffer.mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(name, 0, static_cast<GLsizeiptr>(padded), mapping));
         error = takeGlError();
@@ -47,22 +68,14 @@ Result<Buffer> Buffer::create(size_t bytes, BufferKind kind) {
     return buffer;
 }
 
-Result<Buffer> Buffer::fromBytes(std::span<const std::byte> bytes) {
-    Result<Buffer> buffer = create(bytes.size());
-    if (buffer) buffer->write(bytes);
-    return buffer;
-}
-
 void Buffer::write(std::span<const std::byte> bytes, size_t offset) {
     ASSERT(offset <= bytes_ && bytes.size() <= bytes_ - offset, "write inside the buffer");
     if (bytes.empty()) return;
-    if (bytes.size() >= kWriteOvertakesClear) endClear();
+    if (bytes.size() >= kWriteOvertakesClear && cleared_) {
+        glFinish();
+        cleared_ = false;
+    }
     glNamedBufferSubData(name(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
-}
-
-void Buffer::endClear() {
-    if (cleared_) glFinish();
-    cleared_ = false;
 }
 
 void Buffer::read(std::span<std::byte> bytes, size_t offset) const {

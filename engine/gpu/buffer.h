@@ -35,8 +35,8 @@ class Buffer {
     explicit operator bool() const { return static_cast<bool>(name_); }
 
     // In order with draws and copies; not with dispatches that still read the buffer, which a driver is known to let a write overtake (use
-    // Device::write for what kernels read). fill() never waits for the GPU, write() only after create() or fill(), with 64 KiB or more;
-    // read() does.
+    // Device::write for what kernels read). create(), from() and fill() never wait for the GPU, write() only after create() or fill() of a
+    // plain buffer, with 64 KiB or more; read() does.
     void write(std::span<const std::byte> bytes, size_t offset = 0);
     void read(std::span<std::byte> bytes, size_t offset = 0) const;
     void fill(uint32_t word);  // every 4 bytes
@@ -56,7 +56,8 @@ class Buffer {
     void bind(unsigned target, unsigned binding) const;
 
   private:
-    void endClear();
+    static Result<Buffer> make(size_t bytes, BufferKind kind, const std::byte* content);
+    static Result<Buffer> makeOf(std::span<const std::byte> first, size_t bytes, BufferKind kind);
     static Result<Buffer> fromBytes(std::span<const std::byte> bytes);
     BufferName name_;
     size_t bytes_ = 0;

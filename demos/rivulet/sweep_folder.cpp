@@ -147,17 +147,17 @@ std::vector<size_t> SweepFolder::endedTasks() const {
     return tasks;
 }
 
-Descriptor SweepFolder::lock(size_t task, std::optional<Error>& error, bool wait) const {
-    const std::string name = ended(task) + ".lock";
+Result<Descriptor> SweepFolder::lock(size_t task, bool wait) const { return lockFile(ended(task) + ".lock", wait); }
+
+Result<Descriptor> lockFile(const std::string& name, bool wait) {
     Descriptor file = openDescriptor(name, O_RDWR | O_CREAT);
     int locked = -1;
     do {
         locked = file.valid() ? ::flock(file.get(), wait ? LOCK_EX : LOCK_EX | LOCK_NB) : -1;
     } while (file.valid() && locked != 0 && errno == EINTR);
     if (locked == 0) return file;
-    const int why = errno;
-    if (!file.valid() || why != EWOULDBLOCK) error = failed(fmt::format("{} cannot be locked: {}", name, reasonOf(why)));
-    return {};
+    if (file.valid() && errno == EWOULDBLOCK) return Descriptor();
+    return failed(fmt::format("{} cannot be locked: {}", name, reasonOf(errno)));
 }
 
 }  // namespace rivulet

@@ -43,9 +43,8 @@ class SweepFolder {
 
     bool hasEnded(size_t task) const;
     std::vector<size_t> endedTasks() const;  // in order
-    // Locks a task; `wait`: until another process, and what it started, has released it. Not valid: another process has locked it, or
-    // `error` gives the reason.
-    Descriptor lock(size_t task, std::optional<Error>& error, bool wait = false) const;
+    // Locks a task, as lockFile.
+    Result<Descriptor> lock(size_t task, bool wait) const;
 
     // Adds the tasks that have ended to results.csv and removes those without a folder; `again` is read again. The bytes depend on
     // nothing but the tasks; `next` is closed before the tasks are listed. Returns the size of the table. Error (failed): not writable.
@@ -60,6 +59,10 @@ class SweepFolder {
     Status writeTasks(const Sweep& sweep, int threads) const;
     std::string path_;
 };
+
+// Locks a file (flock), which is made if it does not exist; `wait`: until another process, and what it started, has released it. Not valid:
+// another process has locked it. Error (failed): it cannot be locked.
+Result<Descriptor> lockFile(const std::string& name, bool wait);
 
 // The words of the command that runs one task, and a command as a shell reads it.
 std::vector<std::string> taskLine(const Sweep& sweep, const SweepFolder& folder, size_t task, int threads);

@@ -1,10 +1,7 @@
 // The table of results.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <filesystem>
 #include <map>
@@ -167,9 +164,8 @@ Result<std::vector<std::pair<std::string, std::string>>> numbersOf(const std::st
 }
 
 Descriptor SweepFolder::takeTable() const {
-    Descriptor next = openDescriptor(file("results.next"), O_RDWR | O_CREAT);
-    if (next.valid() && ::flock(next.get(), LOCK_EX | LOCK_NB) == 0) return next;
-    return {};
+    Result<Descriptor> next = lockFile(file("results.next"), false);
+    return next ? std::move(*next) : Descriptor();
 }
 
 // Two locks: one process collects, and one waits for it. A task that ends while another waits is in the table of that one, which reads the
@@ -182,13 +178,9 @@ Status SweepFolder::collectSoon(const Sweep& sweep, size_t task) const {
 }
 
 Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again, Descriptor* next) const {
-    const std::string name = file("results.csv"), lockName = file("results.lock");
-    const Descriptor lock = openDescriptor(lockName, O_RDWR | O_CREAT);
-    int locked = -1;
-    do {
-        locked = lock.valid() ? ::flock(lock.get(), LOCK_EX) : -1;
-    } while (lock.valid() && locked != 0 && errno == EINTR);
-    if (locked != 0) return failed(fmt::format("{} cannot be locked: {}", lockName, reasonOf(errno)));
+    const std::string name = file("results.csv");
+    const Result<Descriptor> lock = lockFile(file("results.lock"), true);
+    if (!lock) return lock.error();
     if (next != nullptr) (void)next->close();
     std::set<size_t> all;
     for (const size_t task : endedTasks())

@@ -1,6 +1,6 @@
 // The folder of a sweep, which several processes use at a time:
 //
-//     sweep.json      the sweep, as it was given; tasks read it
+//     sweep.json      the sweep, as it was given; tasks read it; sweep.lock: locked while it and the next two are written
 //     origin.json     the folder of the commands, and what the tasks depend on (sweep_origin.h)
 //     tasks.txt       one command line a task
 //     tasks/7         a task that has ended: what its commands wrote, and log.txt, what they printed
@@ -18,6 +18,8 @@
 
 namespace rivulet {
 
+struct SweepOrigin;
+
 struct TableSize {
     size_t rows = 0;     // without the header
     size_t numbers = 0;  // columns that come from stats.json
@@ -34,7 +36,7 @@ class SweepFolder {
 
     // Writes sweep.json, origin.json and tasks.txt, unless they are there with the same content. `text`: the content of sweep.file;
     // `threads`: of each task. Error (badInput): the folder is that of another sweep, unless `sweep` has the same tasks and then more; as
-    // checkOrigin and checkTasks. (failed): not writable.
+    // checkOrigin and checkTasks. (failed): not writable. Of sweeps that start at once, one prepares the folder and the others find it so.
     Status prepare(const Sweep& sweep, std::string_view text, int threads) const;
 
     bool isPrepared() const;
@@ -56,6 +58,8 @@ class SweepFolder {
     Descriptor takeTable() const;
 
   private:
+    Status adopt(const Sweep& sweep, std::string_view text, int threads) const;
+    Status write(const Sweep& sweep, std::string_view text, int threads, const SweepOrigin& origin) const;
     Status writeTasks(const Sweep& sweep, int threads) const;
     std::string path_;
 };

@@ -287,6 +287,27 @@ TEST(ProgramSweep, ATaskThatIsHeldElsewhereIsDoneBeforeItReportsSuccess) {
     EXPECT_TRUE(fs::exists(scratch.path() / "s/tasks/1"));
 }
 
+// Two sweeps that start at once: the second waits while the first prepares the folder.
+TEST(ProgramSweep, DifferentSweepsNeverShareAFolder) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    scratch.file("t.json", R"({"command": "/bin/true {k}", "parameters": {"k": [3, 4]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code, 0);
+    fs::create_directory(scratch.path() / "both");
+    Outcome second;
+    RunOptions first = in(scratch);
+    first.whileRunning = [&](pid_t) {
+        if (second.code < 0 && fs::exists(scratch.path() / "held"))
+            second = runProgram({"sweep", "t.json", "--output", "both"}, in(scratch));
+        return 0;
+    };
+    const char* prepare = "touch held; sleep 0.3; cp s/sweep.json s/origin.json s/tasks.txt both";
+    ASSERT_EQ(runCommand({"/usr/bin/flock", "both/sweep.lock", "/bin/sh", "-c", prepare}, first).code, 0);
+    expectRefusal(second, 2, "t.json has changed since its tasks in ");
+    EXPECT_FALSE(fs::exists(scratch.path() / "both/results.csv"));
+    EXPECT_EQ(scratch.text("both/sweep.json"), scratch.text("s.json"));
+}
+
 // The table is read and written once for all tasks that end while it is busy, and lacks none at the end.
 TEST(ProgramSweep, TasksThatEndTogetherAreAllInTheTable) {
     const Scratch scratch;

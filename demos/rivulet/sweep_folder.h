@@ -49,7 +49,8 @@ class SweepFolder {
     Result<Descriptor> lock(size_t task, bool wait) const;
 
     // Adds the tasks that have ended to results.csv and removes those without a folder; `again` is read again. The bytes depend on
-    // nothing but the tasks; `next` is closed before the tasks are listed. Returns the size of the table. Error (failed): not writable.
+    // nothing but the tasks; `next` is closed before the tasks are listed. Where a task has ended that `sweep` lacks, because the sweep has
+    // grown, it is read again. Returns the size of the table. Error (failed): not writable.
     Result<TableSize> collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt, Descriptor* next = nullptr) const;
     // The same for a task that has just ended, unless another process is about to do it: the table is read and written once for all tasks
     // that end meanwhile. When the last process has ended, it is complete.

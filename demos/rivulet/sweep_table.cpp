@@ -177,13 +177,24 @@ Status SweepFolder::collectSoon(const Sweep& sweep, size_t task) const {
     return collected ? ok() : Status(collected.error());
 }
 
-Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again, Descriptor* next) const {
+Result<TableSize> SweepFolder::collect(const Sweep& given, std::optional<size_t> again, Descriptor* next) const {
     const std::string name = file("results.csv");
     const Result<Descriptor> lock = lockFile(file("results.lock"), true);
     if (!lock) return lock.error();
     if (next != nullptr) (void)next->close();
+    const std::vector<size_t> endedNow = endedTasks();
+    std::optional<Sweep> grown;  // since this process read it
+    if (!endedNow.empty() && endedNow.back() >= given.tasks) {
+        const std::string kept = file("sweep.json");
+        const Result<std::string> text = readFile(kept);
+        if (!text) return text.error();
+        Result<Sweep> read = readSweep(*text, kept);
+        if (!read) return read.error();
+        grown = std::move(*read);
+    }
+    const Sweep& sweep = grown ? *grown : given;
     std::set<size_t> all;
-    for (const size_t task : endedTasks())
+    for (const size_t task : endedNow)
         if (task < sweep.tasks) all.insert(task);
     ResultTable table(sweep);
     std::string before;

@@ -308,6 +308,36 @@ TEST(ProgramSweep, DifferentSweepsNeverShareAFolder) {
     EXPECT_EQ(scratch.text("both/sweep.json"), scratch.text("s.json"));
 }
 
+// Processes that began before the sweep grew write the rows of the new tasks, too.
+TEST(ProgramSweep, ATableHasTheTasksThatASweepGrewBy) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"sweep", "s.json", "--task", "0"}, {"sweep", "s.json"}}) {
+        const Scratch scratch;
+        const auto sweep = [&](const char* values) {
+            scratch.file(
+                "s.json",
+                fmt::format(R"x({{"command": "/bin/sh -c 'test {{k}} != 0 || while ! test -f go; do sleep 0.02; done'", "parameters": )x"
+                            R"x({{"k": {}}}}})x",
+                            values));
+            return runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code;
+        };
+        ASSERT_EQ(sweep("[0]"), 0);
+        bool grown = false;
+        RunOptions options = in(scratch);
+        options.whileRunning = [&](pid_t) {
+            if (grown || !fs::exists(scratch.path() / "s/tasks/0.part")) return 0;
+            grown = true;
+            EXPECT_EQ(sweep("[0, 1, 2]"), 0);
+            for (const char* task : {"1", "2"}) EXPECT_EQ(runProgram({"sweep", "s.json", "--task", task}, in(scratch)).code, 0);
+            scratch.file("go", "go");
+            return 0;
+        };
+        EXPECT_EQ(runProgram(words, options).code, 0);
+        const auto rows = rowsAt(scratch, "s/results.csv");
+        ASSERT_EQ(rows.size(), 4U) << words.size();
+        EXPECT_EQ(rows[3], (std::vector<std::string>{"2", "2"}));
+    }
+}
+
 // The table is read and written once for all tasks that end while it is busy, and lacks none at the end.
 TEST(ProgramSweep, TasksThatEndTogetherAreAllInTheTable) {
     const Scratch scratch;

@@ -11,11 +11,13 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/number.h"
+#include "engine/core/param_list.h"
 #include "engine/core/table.h"
 #include "fluid/scene/scene_inputs.h"
 
@@ -59,6 +61,26 @@ class SweepRandom {
 
 // The numbers of a sweep have 9 significant digits, which tell all floats apart: a last bit that differs between platforms does not show.
 std::string sweepNumber(double x) { return fmt::format("{:.9g}", x); }
+
+// "emitters[0].speed" -> "emitters[].speed"
+std::string withoutIndices(const std::string& path) {
+    std::string plain;
+    for (const char c : path)
+        if (!plain.ends_with('[') || c < '0' || c > '9') plain += c;
+    return plain;
+}
+
+// Whether `name` is the path of a value that scenes have. Their name and doc change no result: a sweep may use these words otherwise.
+bool isOfScenes(const std::string& name) {
+    static const std::set<std::string> paths = [] {
+        SceneFile scene;
+        std::set<std::string> all;
+        for (const ParamEntry& entry : listParams([&scene](ParamVisitor& v) { scene.visit(v); }))
+            if (entry.kind == ParamEntry::Kind::value && entry.path != "name" && entry.path != "doc") all.insert(withoutIndices(entry.path));
+        return all;
+    }();
+    return paths.contains(withoutIndices(name));
+}
 
 // The values of a parameter before tasks are made of them: a list, or a range.
 struct SweepValues {
@@ -349,8 +371,8 @@ class SweepReader {
         return ok();
     }
 
-    // Every {NAME} is known, and every parameter is used.
-    Status checkBraces() const {
+    // Every {NAME} is known, and every parameter is used; which of them each `run` is given.
+    Status checkBraces() {
         std::vector<std::string> known = {"task"};
         for (const SweepParameter& parameter : sweep_.parameters) known.push_back(parameter.name);
         bool runs = false;
@@ -371,7 +393,8 @@ class SweepReader {
                         near.empty() ? "add it to `parameters`, or write {{ for a brace" : fmt::format("did you mean {{{}}}?", near)));
                 }
         }
-        for (const SweepParameter& parameter : sweep_.parameters) {
+        for (size_t p = 0; p < sweep_.parameters.size(); ++p) {
+            const SweepParameter& parameter = sweep_.parameters[p];
             const std::string braces = fmt::format("{{{}}}", parameter.name);
             const bool named = std::any_of(sweep_.commands.begin(), sweep_.commands.end(), [&](const SweepCommand& command) {
                 return std::any_of(command.words.begin(), command.words.end(),
@@ -380,8 +403,20 @@ class SweepReader {
             if (!named && !runs)
                 return badInput(fmt::format("{}: no command uses {}; write {} in a command, or use the verb run", parameter.place,
                                             parameter.name, braces));
+            for (SweepCommand& command : sweep_.commands)
+                if (command.words.front() == "run" && (!named || isOfScenes(parameter.name)) && !setsItself(command, parameter.name))
+                    command.set.push_back(p);
         }
         return ok();
+    }
+
+    // Whether a command has --set NAME=...
+    static bool setsItself(const SweepCommand& command, const std::string& name) {
+        const std::string assigned = name + "=", joined = "--set=" + assigned;
+        for (size_t k = 0; k < command.words.size(); ++k)
+            if (command.words[k].starts_with(joined) || (k > 0 && command.words[k - 1] == "--set" && command.words[k].starts_with(assigned)))
+                return true;
+        return false;
     }
 
     std::string_view text_;
@@ -398,7 +433,7 @@ Result<Sweep> readSweep(std::string_view text, const std::string& file) { return
 
 std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command, size_t task, const std::string& taskFolder) {
     std::vector<std::string> words;
-    words.reserve(command.words.size() + 2 * sweep.parameters.size());
+    words.reserve(command.words.size() + 2 * command.set.size());
     for (const std::string& word : command.words) {
         std::string made;
         for (size_t at = 0; at < word.size(); ++at) {
@@ -416,15 +451,9 @@ std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command
         }
         words.push_back(std::move(made));
     }
-    if (words.front() != "run") return words;
-    for (const SweepParameter& parameter : sweep.parameters) {
-        const std::string braces = fmt::format("{{{}}}", parameter.name);
-        bool named = false;
-        for (const SweepCommand& each : sweep.commands)
-            for (const std::string& word : each.words) named = named || word.find(braces) != std::string::npos;
-        if (named) continue;
+    for (const size_t p : command.set) {
         words.emplace_back("--set");
-        words.push_back(fmt::format("{}={}", parameter.name, parameter.values[task]));
+        words.push_back(fmt::format("{}={}", sweep.parameters[p].name, sweep.parameters[p].values[task]));
     }
     return words;
 }

@@ -27,6 +27,7 @@ struct SweepParameter {
 struct SweepCommand {
     std::vector<std::string> words;  // the first is a verb of rivulet, or the path of another program; `run` with --out and --stats
     std::string place;               // as SweepParameter::place
+    std::vector<size_t> set = {};    // of `run`: the parameters that follow as --set NAME=VALUE
 };
 
 struct Sweep {
@@ -42,8 +43,8 @@ struct Sweep {
 // words, a name in braces that is neither `task` nor a parameter, a parameter that no command uses.
 Result<Sweep> readSweep(std::string_view text, const std::string& file);
 
-// The command's words for one task: {task} is `taskFolder`, {NAME} a parameter, {{ a brace. The parameters that no command names in braces
-// follow a command of the verb `run`, as --set NAME=VALUE.
+// The command's words for one task: {task} is `taskFolder`, {NAME} a parameter, {{ a brace. A command of the verb `run` is followed by
+// --set NAME=VALUE of each parameter of a scene that it does not set itself, and of each that no command names in braces.
 std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command, size_t task, const std::string& taskFolder);
 
 // Checks that the verb or program of each command exists, that no two tasks write the same file, and the arguments and the scene of each

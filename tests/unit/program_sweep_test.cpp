@@ -470,6 +470,39 @@ TEST(ProgramSweep, TheListOfTasksFollowsTheOptions) {
     EXPECT_NE(scratch.text("s/tasks.txt").find("/t.json --output"), std::string::npos);
 }
 
+// The energy of a falling block is m (g t)^2 / 2: a parameter reaches each run that does not set it itself, whatever else it names.
+TEST(ProgramSweep, AParameterThatIsNamedInBracesReachesItsRuns) {
+    for (const std::string& commands :
+         {std::string(R"("run small.json --no-render --backend cpu --frames 3", "/bin/echo {fluid.gravity}")"),
+          std::string(R"("run small.json --no-render --backend cpu --frames 3 --trace {task}/{fluid.gravity}.json")")}) {
+        const Scratch scratch;
+        scratch.file("small.json", smallScene());
+        scratch.file("s.json",
+                     R"({"commands": [)" + commands + R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
+        expectRefusal(runProgram({"sweep", "s.json"}, in(scratch)), 2, "--set n=7: no parameter");
+        scratch.file("s.json", R"({"commands": ["/bin/echo {n}", )" + commands +
+                                   R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
+        const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
+        ASSERT_EQ(swept.code, 0) << swept.err;
+        const std::string kinetic = "\"kinetic\": ";
+        std::vector<double> energies;
+        for (const char* task : {"0", "1"}) {
+            const std::string stats = scratch.text(std::string("s/tasks/") + task + "/stats.json");
+            const size_t at = stats.find(kinetic);
+            ASSERT_NE(at, std::string::npos) << stats;
+            energies.push_back(std::stod(stats.substr(at + kinetic.size())));
+        }
+        EXPECT_NEAR(energies[0] / energies[1], 81, 1) << commands;
+    }
+    // A run that sets the parameter itself: another value would not be a vector.
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    scratch.file("s.json", R"({"command": "run small.json --no-render --frames 1 --set fluid.gravity=0,-{fluid.gravity},0",
+                               "parameters": {"fluid.gravity": [1, 2]}})");
+    const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
+    EXPECT_EQ(swept.code, 0) << swept.err;
+}
+
 TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {
     const Scratch scratch;
     scratch.file("small.json", smallScene());

@@ -176,10 +176,11 @@ class SweepReader {
         return words;
     }
 
-    // The default outputs of `run` in a sweep are in the task's folder. A replay has no statistics.
+    // The default outputs of `run` and `export` in a sweep are in the task's folder. A replay has no statistics.
     static void addOutputs(std::vector<std::string>& words) {
-        if (!hasOption(words, "--out")) words.insert(words.end(), {"--out", kTaskFolder});
-        if (!hasOption(words, "--stats") && !hasOption(words, "--replay"))
+        const bool runs = words.front() == "run";
+        if ((runs || words.front() == "export") && !hasOption(words, "--out")) words.insert(words.end(), {"--out", kTaskFolder});
+        if (runs && !hasOption(words, "--stats") && !hasOption(words, "--replay"))
             words.insert(words.end(), {"--stats", fmt::format("{}/stats.json", kTaskFolder)});
     }
 
@@ -196,7 +197,7 @@ class SweepReader {
             if (!text.isString()) return wrong(text, "a command must be a text");
             Result<std::vector<std::string>> words = split(text);
             if (!words) return words.error();
-            if (words->front() == "run") addOutputs(*words);
+            addOutputs(*words);
             sweep_.commands.push_back({std::move(*words), placeAt(text)});
         }
         return ok();
@@ -480,12 +481,29 @@ Status checkProgram(const std::string& program, const std::string& place) {
     return ok();
 }
 
+// Error (badInput): a verb would write its default output, which all tasks share.
+Status checkDefaults(const SweepCommand& command) {
+    struct Default {
+        const char *verb, *option, *instead;
+    };
+    for (const Default& row : {Default{"voxelize", "--out", "/model.rvox"}, Default{"join", "--video", "/joined.mp4"},
+                               Default{"chart", "--out", ""}}) {
+        const std::vector<std::string>& words = command.words;
+        if (words.front() != row.verb || hasOption(words, row.option)) continue;
+        if (hasOption(words, "--point") || hasOption(words, "--sweep")) continue;  // of chart: another file is its output
+        return badInput(fmt::format("{}: without {}, tasks of {} may write the same file; add for example {} {}{}", command.place,
+                                    row.option, row.verb, row.option, kTaskFolder, row.instead));
+    }
+    return ok();
+}
+
 // The files and folders that tasks write, by the task. Error (badInput): two tasks write the same one.
 class TaskOutputs {
   public:
     Status add(const std::vector<std::string>& words, size_t task, const std::string& place) {
         for (size_t k = 1; k < words.size(); ++k)
-            for (const char* name : {"--out", "--stats", "--video", "--trace", "--save", "--record", "--json"}) {
+            for (const char* name : {"--out", "--stats", "--video", "--trace", "--save", "--record", "--json", "--slices", "--picture",
+                                     "--pictures", "--markdown", "--scene", "--sweep"}) {
                 if (!isOption(words[k], name)) continue;
                 const size_t length = std::string_view(name).size();
                 const std::string path = words[k].size() > length ? words[k].substr(length + 1) : k + 1 < words.size() ? words[k + 1] : "";
@@ -510,6 +528,8 @@ Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
     std::error_code error;
     fs::current_path(sweep.folder, error);
     if (error) return failed(fmt::format("the folder {} cannot be entered: {}", sweep.folder, error.message()));
+    for (const SweepCommand& command : sweep.commands)
+        if (Status named = sweep.tasks > 1 ? checkDefaults(command) : ok(); !named) return named.error();
     for (size_t task = 0; task < sweep.tasks; ++task)
         for (const SweepCommand& command : sweep.commands) {
             std::vector<std::string> words = wordsOf(sweep, command, task, kTaskFolder);

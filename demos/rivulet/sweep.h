@@ -25,7 +25,7 @@ struct SweepParameter {
 };
 
 struct SweepCommand {
-    std::vector<std::string> words;  // the first is a verb of rivulet, or the path of another program; `run` with --out and --stats
+    std::vector<std::string> words;  // the first is a verb of rivulet, or the path of another program; `run` and `export` with their outputs
     std::string place;               // as SweepParameter::place
     std::vector<size_t> set = {};    // of `run`: the parameters that follow as --set NAME=VALUE
 };

@@ -430,6 +430,13 @@ TEST(ProgramSweep, ErrorsNamePlaceAndRemedyAndLeaveNothing) {
     refused(R"({"command": "./small.json"})", "./small.json is not executable");
     refused(R"({"command": "run small.json --out o", "parameters": {"fluid.viscosity": [1, 2]}})", "tasks 0 and 1 both write --out o;");
     refused(R"({"command": "run small.json --stats=a{n}", "parameters": {"n": [1, 2, 1]}})", "tasks 0 and 2 both write --stats a1");
+    refused(R"({"command": "voxelize a.obj --resolution {n}", "parameters": {"n": [8, 16]}})",
+            "s.json:1:13: without --out, tasks of voxelize may write the same file; add for example --out {task}/");
+    refused(R"({"command": "join pieces{n}", "parameters": {"n": [1, 2]}})", "add for example --video {task}/");
+    refused(R"({"command": "chart {c} --quick", "parameters": {"c": ["stability", "surface"]}})", "add for example --out {task}");
+    refused(R"({"command": "chart {c} --sweep c.json", "parameters": {"c": ["taylor_green", "all"]}})", "both write --sweep c.json");
+    refused(R"({"command": "voxelize a.obj --out {task}/a.rvox --slices s.png --resolution {n}", "parameters": {"n": [8, 16]}})",
+            "tasks 0 and 1 both write --slices s.png");
     refused("{", "s.json:1:");
     expectRefusal(runProgram({"sweep", "none.json"}, in(scratch)), 2, "none.json cannot be read");
     scratch.file("s.json", R"({"command": "/bin/true"})");
@@ -501,6 +508,18 @@ TEST(ProgramSweep, AParameterThatIsNamedInBracesReachesItsRuns) {
                                "parameters": {"fluid.gravity": [1, 2]}})");
     const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
     EXPECT_EQ(swept.code, 0) << swept.err;
+}
+
+TEST(ProgramSweep, AnExportWritesIntoTheFolderOfItsTask) {
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    scratch.file("s.json", R"({"command": "export small.json --format zarr --seconds 0.05 --backend cpu --set fluid.viscosity={v}",
+                               "parameters": {"v": [0.1, 1]}})");
+    const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
+    ASSERT_EQ(swept.code, 0) << swept.err;
+    EXPECT_FALSE(fs::exists(scratch.path() / "out"));
+    EXPECT_NE(scratch.text("s/tasks/0/small.zarr/.zattrs").find("\"fluid.viscosity\": 0.1"), std::string::npos);
+    EXPECT_NE(scratch.text("s/tasks/1/small.zarr/.zattrs").find("\"fluid.viscosity\": 1"), std::string::npos);
 }
 
 TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {

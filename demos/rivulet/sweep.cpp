@@ -15,6 +15,7 @@
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
+#include "engine/core/input_file.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/number.h"
 #include "engine/core/param_list.h"
@@ -76,7 +77,8 @@ bool isOfScenes(const std::string& name) {
         SceneFile scene;
         std::set<std::string> all;
         for (const ParamEntry& entry : listParams([&scene](ParamVisitor& v) { scene.visit(v); }))
-            if (entry.kind == ParamEntry::Kind::value && entry.path != "name" && entry.path != "doc") all.insert(withoutIndices(entry.path));
+            if (entry.kind == ParamEntry::Kind::value && entry.path != "name" && entry.path != "doc")
+                all.insert(withoutIndices(entry.path));
         return all;
     }();
     return paths.contains(withoutIndices(name));
@@ -415,7 +417,8 @@ class SweepReader {
     static bool setsItself(const SweepCommand& command, const std::string& name) {
         const std::string assigned = name + "=", joined = "--set=" + assigned;
         for (size_t k = 0; k < command.words.size(); ++k)
-            if (command.words[k].starts_with(joined) || (k > 0 && command.words[k - 1] == "--set" && command.words[k].starts_with(assigned)))
+            if (command.words[k].starts_with(joined) ||
+                (k > 0 && command.words[k - 1] == "--set" && command.words[k].starts_with(assigned)))
                 return true;
         return false;
     }
@@ -486,8 +489,8 @@ Status checkDefaults(const SweepCommand& command) {
     struct Default {
         const char *verb, *option, *instead;
     };
-    for (const Default& row : {Default{"voxelize", "--out", "/model.rvox"}, Default{"join", "--video", "/joined.mp4"},
-                               Default{"chart", "--out", ""}}) {
+    for (const Default& row :
+         {Default{"voxelize", "--out", "/model.rvox"}, Default{"join", "--video", "/joined.mp4"}, Default{"chart", "--out", ""}}) {
         const std::vector<std::string>& words = command.words;
         if (words.front() != row.verb || hasOption(words, row.option)) continue;
         if (hasOption(words, "--point") || hasOption(words, "--sweep")) continue;  // of chart: another file is its output
@@ -516,14 +519,45 @@ class TaskOutputs {
         return ok();
     }
 
+    bool has(const std::string& path) const { return tasks_.contains(fs::path(path).lexically_normal().string()); }
+
   private:
     std::map<std::string, size_t> tasks_;
+};
+
+// Recordings and states that runs read, by their paths.
+class TaskInputs {
+  public:
+    void add(const std::string& path, const SweepCommand& command, bool first) {
+        if (!path.empty() && path.find(kTaskFolder) == std::string::npos) inputs_.emplace(path, Input{&command, first});
+    }
+
+    // Adds them to `files`, but for those that the tasks themselves write. Error (badInput): one cannot be read, and no command before its
+    // own may make it.
+    Status addTo(std::set<std::string>& files, const TaskOutputs& outputs) const {
+        for (const auto& [path, input] : inputs_) {
+            std::error_code none;
+            if (outputs.has(path) || (!input.first && !fs::exists(path, none))) continue;
+            if (Status readable = checkInput(path); !readable)
+                return badInput(fmt::format("{}: {}", input.command->place, readable.error().message));
+            files.insert(path);
+        }
+        return ok();
+    }
+
+  private:
+    struct Input {
+        const SweepCommand* command;
+        bool first;  // of the commands
+    };
+    std::map<std::string, Input> inputs_;
 };
 
 }  // namespace
 
 Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
     std::set<std::string> files;
+    TaskInputs inputs;
     TaskOutputs outputs;
     std::error_code error;
     fs::current_path(sweep.folder, error);
@@ -541,6 +575,8 @@ Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
             const auto read = readRun({words.begin() + 1, words.end()});
             if (read && *read) {
                 for (const SceneInput& input : inputsOf((*read)->scene)) files.insert(input.path);
+                for (const std::string& path : {(*read)->replay, (*read)->resume})
+                    inputs.add(path, command, &command == sweep.commands.data());
                 continue;
             }
             if (read) return badInput(fmt::format("{}: --help is no command of a sweep; leave it out", command.place));
@@ -551,6 +587,7 @@ Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
                 if (why.find(parameter.name + "=") != std::string::npos) place = parameter.place;
             return Error{fmt::format("{}: task {}: {}", place, task, why), read.error().fault};
         }
+    if (Status added = inputs.addTo(files, outputs); !added) return added.error();
     return files;
 }
 

@@ -25,9 +25,10 @@ struct SweepParameter {
 };
 
 struct SweepCommand {
-    std::vector<std::string> words;  // the first is a verb of rivulet, or the path of another program; `run` and `export` with their outputs
-    std::string place;               // as SweepParameter::place
-    std::vector<size_t> set = {};    // of `run`: the parameters that follow as --set NAME=VALUE
+    std::vector<std::string>
+        words;                     // the first is a verb of rivulet, or the path of another program; `run` and `export` with their outputs
+    std::string place;             // as SweepParameter::place
+    std::vector<size_t> set = {};  // of `run`: the parameters that follow as --set NAME=VALUE
 };
 
 struct Sweep {
@@ -48,8 +49,8 @@ Result<Sweep> readSweep(std::string_view text, const std::string& file);
 std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command, size_t task, const std::string& taskFolder);
 
 // Checks that the verb or program of each command exists, that no two tasks write the same file, and the arguments and the scene of each
-// `run` as `rivulet run` does; changes the working directory to the sweep's folder. Returns the files that the scenes read. Error: with the
-// place of the parameter that the message names, or of the command.
+// `run` as `rivulet run` does; changes the working directory to the sweep's folder. Returns the files that the runs read: of scenes, and
+// recordings and states that no task writes. Error: with the place of the parameter that the message names, or of the command.
 Result<std::set<std::string>> checkTasks(const Sweep& sweep);
 
 }  // namespace rivulet

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include "tests/unit/program_runner.h"
 
@@ -484,8 +485,7 @@ TEST(ProgramSweep, AParameterThatIsNamedInBracesReachesItsRuns) {
           std::string(R"("run small.json --no-render --backend cpu --frames 3 --trace {task}/{fluid.gravity}.json")")}) {
         const Scratch scratch;
         scratch.file("small.json", smallScene());
-        scratch.file("s.json",
-                     R"({"commands": [)" + commands + R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
+        scratch.file("s.json", R"({"commands": [)" + commands + R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
         expectRefusal(runProgram({"sweep", "s.json"}, in(scratch)), 2, "--set n=7: no parameter");
         scratch.file("s.json", R"({"commands": ["/bin/echo {n}", )" + commands +
                                    R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
@@ -574,6 +574,42 @@ TEST(ProgramSweep, AFolderIsThatOfItsScenes) {
     ASSERT_NE(at, std::string::npos);
     scratch.file("s/origin.json", origin.replace(at, std::string(RIVULET_VERSION).size(), "0.0.9"));
     expectRefusal(swept("c"), 2, "were made by version 0.0.9 of rivulet");
+}
+
+// A recording or a state that tasks read, as the scenes: old and new results are never mixed.
+TEST(ProgramSweep, AFolderIsThatOfItsRecordingsAndStates) {
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    const auto made = [&](const char* option, const char* file, const char* frames) {
+        return runProgram({"run", "small.json", "--no-render", "--backend", "cpu", "--frames", frames, option, file}, in(scratch)).code;
+    };
+    const auto sweep = [&](const std::string& file, const std::string& commands) {
+        scratch.file(file, R"({"commands": [)" + commands + R"(], "parameters": {"n": [1, 2]}})");
+        return runProgram({"sweep", file, "--dry-run"}, in(scratch));
+    };
+    for (const auto& [option, name, reads] :
+         {std::tuple("--record", "r.rrec", R"("run small.json --replay r.rrec --frames 0:{n} --images")"),
+          std::tuple("--save", "r.rstate", R"("run small.json --resume r.rstate --frames {n}")")}) {
+        const std::string file = std::string(option + 2) + ".json";
+        expectRefusal(sweep(file, reads), 2, std::string(file) + ":1:15: " + name + " cannot be read: it does not exist");
+        ASSERT_EQ(made(option, name, "2"), 0);
+        const std::string before = scratch.text(name);
+        ASSERT_EQ(sweep(file, reads).code, 0);
+        ASSERT_EQ(made(option, name, "3"), 0);
+        expectRefusal(sweep(file, reads), 2, std::string(name) + " is not the file that the tasks in ");
+        expectRefusal(runProgram({"sweep", file, "--task", "1"}, in(scratch)), 2, "is not the file that");
+        scratch.file(name, before);
+        EXPECT_EQ(sweep(file, reads).code, 0);
+    }
+    // Not those that the tasks themselves write.
+    for (const char* commands :
+         {R"("run small.json --record {task}/r.rrec", "run small.json --replay {task}/r.rrec --frames 0:{n} --images")",
+          R"("run small.json --record r{n}.rrec", "run small.json --replay r{n}.rrec --images")",
+          R"("/bin/cp r.rrec q{n}.rrec", "run small.json --replay q{n}.rrec --images")"}) {
+        fs::remove_all(scratch.path() / "own");
+        const Outcome own = sweep("own.json", commands);
+        EXPECT_EQ(own.code, 0) << own.err;
+    }
 }
 
 // Slurm may start a task hours after its sweep was submitted.

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -58,6 +59,15 @@ Status addScenes(const Sweep& sweep, SweepOrigin& origin) {
     if (!scenes) return scenes.error();
     for (const std::string& name : *scenes) origin.scenes.emplace(originName(name, sweep.folder), "");
     return hashScenes(origin);
+}
+
+// False: errno says why.
+bool locks(const Descriptor& file, bool wait) {
+    int locked = -1;
+    do {
+        locked = ::flock(file.get(), wait ? LOCK_EX : LOCK_EX | LOCK_NB);
+    } while (locked != 0 && errno == EINTR);
+    return locked == 0;
 }
 
 std::string programPath() {
@@ -172,13 +182,16 @@ std::vector<size_t> SweepFolder::endedTasks() const {
 
 Result<Descriptor> SweepFolder::lock(size_t task, bool wait) const { return lockFile(ended(task) + ".lock", wait); }
 
+bool SweepFolder::isHeld(size_t task) const {
+    const Descriptor file = openDescriptor(ended(task) + ".lock", O_RDWR);
+    return file.valid() && !hasEnded(task) && !locks(file, false) && errno == EWOULDBLOCK;
+}
+
+void SweepFolder::removeLock(size_t task) const { (void)::unlink((ended(task) + ".lock").c_str()); }
+
 Result<Descriptor> lockFile(const std::string& name, bool wait) {
     Descriptor file = openDescriptor(name, O_RDWR | O_CREAT);
-    int locked = -1;
-    do {
-        locked = file.valid() ? ::flock(file.get(), wait ? LOCK_EX : LOCK_EX | LOCK_NB) : -1;
-    } while (file.valid() && locked != 0 && errno == EINTR);
-    if (locked == 0) return file;
+    if (file.valid() && locks(file, wait)) return file;
     if (file.valid() && errno == EWOULDBLOCK) return Descriptor();
     return failed(fmt::format("{} cannot be locked: {}", name, reasonOf(errno)));
 }

@@ -47,6 +47,10 @@ class SweepFolder {
     std::vector<size_t> endedTasks() const;  // in order
     // Locks a task, as lockFile.
     Result<Descriptor> lock(size_t task, bool wait) const;
+    // Whether another process runs a task; leaves no lock.
+    bool isHeld(size_t task) const;
+    // Removes the lock of a task that has ended: nobody needs it any more.
+    void removeLock(size_t task) const;
 
     // Adds the tasks that have ended to results.csv and removes those without a folder; `again` is read again. The bytes depend on
     // nothing but the tasks; `next` is closed before the tasks are listed. Where a task has ended that `sweep` lacks, because the sweep has

@@ -89,7 +89,8 @@ int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int
         }
         if (!lock) return report(lock.error());
     }
-    if (folder.hasEnded(task)) {  // before, or while it was being locked
+    if (folder.hasEnded(task)) {  // before, or while it was being locked; its runner may have been killed before it removed the lock
+        folder.removeLock(task);
         fmt::print("task {} has ended before\n", task);
         return kDone;
     }
@@ -100,7 +101,7 @@ int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int
     std::error_code renamed;
     fs::rename(part, name, renamed);
     if (renamed) return report(failed(fmt::format("{} cannot be renamed to {}: {}", part, name, renamed.message())));
-    (void)::unlink((name + ".lock").c_str());
+    folder.removeLock(task);
     if (Status collected = folder.collectSoon(sweep, task); !collected) return report(collected.error());
     return kDone;
 }
@@ -167,7 +168,7 @@ class SweepJobs {
         if (!waiting_.empty()) return true;
         for (size_t k = 0; k < elsewhere_.size(); ++k) {
             const size_t task = elsewhere_[k];
-            if (runsElsewhere(task)) continue;
+            if (folder_.isHeld(task)) continue;
             elsewhere_.erase(elsewhere_.begin() + static_cast<ptrdiff_t>(k));
             waiting_.push_back(task);
             return true;
@@ -175,16 +176,10 @@ class SweepJobs {
         return false;
     }
 
-    bool runsElsewhere(size_t task) const {
-        if (folder_.hasEnded(task)) return false;
-        const Result<Descriptor> lock = folder_.lock(task, false);
-        return lock && !lock->valid();
-    }
-
     Status start() {
         const size_t task = waiting_.front();
         waiting_.pop_front();
-        if (runsElsewhere(task)) {
+        if (folder_.isHeld(task)) {
             elsewhere_.push_back(task);
             return ok();
         }

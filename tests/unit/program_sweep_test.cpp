@@ -288,6 +288,27 @@ TEST(ProgramSweep, ATaskThatIsHeldElsewhereIsDoneBeforeItReportsSuccess) {
     EXPECT_TRUE(fs::exists(scratch.path() / "s/tasks/1"));
 }
 
+// The runner was killed between the end of its task and the removal of the lock.
+TEST(ProgramSweep, TheLockOfATaskThatHasEndedIsRemoved) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code, 0);
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"sweep", "s.json", "--task", "0"}, {"sweep", "s.json"}}) {
+        fs::remove_all(scratch.path() / "s/tasks/0");
+        fs::remove(scratch.path() / "held");
+        Outcome waiting;
+        RunOptions options = in(scratch);
+        options.whileRunning = [&](pid_t) {
+            if (waiting.code < 0 && fs::exists(scratch.path() / "held")) waiting = runProgram(words, in(scratch));
+            return 0;
+        };
+        ASSERT_EQ(runCommand({"/usr/bin/flock", "s/tasks/0.lock", "/bin/sh", "-c", "touch held; sleep 0.5; mkdir s/tasks/0"}, options).code,
+                  0);
+        EXPECT_EQ(waiting.code, 0) << waiting.err;
+        EXPECT_FALSE(fs::exists(scratch.path() / "s/tasks/0.lock")) << words.size();
+    }
+}
+
 // Two sweeps that start at once: the second waits while the first prepares the folder.
 TEST(ProgramSweep, DifferentSweepsNeverShareAFolder) {
     const Scratch scratch;

@@ -79,6 +79,7 @@ class ResultTable {
     void take(std::string_view csv, const std::set<size_t>& ended) {
         size_t at = csv.find('\n');
         const std::string_view header = csv.substr(0, at);
+        if (csv.find('\r') != std::string_view::npos) return;  // saved by a spreadsheet
         if (at == std::string_view::npos || !header.starts_with(fixed_) || (header.size() > fixed_.size() && header[fixed_.size()] != ','))
             return;
         std::vector<std::string> columns = tableCells(header);

@@ -97,7 +97,9 @@ TEST(ProgramSweep, TheTableDoesNotDependOnTheOrder) {
     // A table that was lost, or that lacks a row, is made again from the tasks, byte for byte.
     const std::string table = scratch.text("one/results.csv");
     const size_t row = table.find("\n4,");
-    for (const std::string& damaged : {std::string(), table.substr(0, row + 1), table.substr(0, row + 9)}) {
+    std::string ofASpreadsheet = table;  // with the line ends of RFC 4180
+    for (size_t at = 0; (at = ofASpreadsheet.find('\n', at)) != std::string::npos; at += 2) ofASpreadsheet.insert(at, 1, '\r');
+    for (const std::string& damaged : {std::string(), table.substr(0, row + 1), table.substr(0, row + 9), ofASpreadsheet}) {
         scratch.file("one/results.csv", damaged.empty() ? " " : damaged);
         ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one"}, in(scratch)).code, 0);
         EXPECT_EQ(scratch.text("one/results.csv"), table);

@@ -11,11 +11,14 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
+#include "engine/core/input_file.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/number.h"
+#include "engine/core/param_list.h"
 #include "engine/core/table.h"
 #include "fluid/scene/scene_inputs.h"
 
@@ -59,6 +62,27 @@ class SweepRandom {
 
 // The numbers of a sweep have 9 significant digits, which tell all floats apart: a last bit that differs between platforms does not show.
 std::string sweepNumber(double x) { return fmt::format("{:.9g}", x); }
+
+// "emitters[0].speed" -> "emitters[].speed"
+std::string withoutIndices(const std::string& path) {
+    std::string plain;
+    for (const char c : path)
+        if (!plain.ends_with('[') || c < '0' || c > '9') plain += c;
+    return plain;
+}
+
+// Whether `name` is the path of a value that scenes have. Their name and doc change no result: a sweep may use these words otherwise.
+bool isOfScenes(const std::string& name) {
+    static const std::set<std::string> paths = [] {
+        SceneFile scene;
+        std::set<std::string> all;
+        for (const ParamEntry& entry : listParams([&scene](ParamVisitor& v) { scene.visit(v); }))
+            if (entry.kind == ParamEntry::Kind::value && entry.path != "name" && entry.path != "doc")
+                all.insert(withoutIndices(entry.path));
+        return all;
+    }();
+    return paths.contains(withoutIndices(name));
+}
 
 // The values of a parameter before tasks are made of them: a list, or a range.
 struct SweepValues {
@@ -154,10 +178,11 @@ class SweepReader {
         return words;
     }
 
-    // The default outputs of `run` in a sweep are in the task's folder. A replay has no statistics.
+    // The default outputs of `run` and `export` in a sweep are in the task's folder. A replay has no statistics.
     static void addOutputs(std::vector<std::string>& words) {
-        if (!hasOption(words, "--out")) words.insert(words.end(), {"--out", kTaskFolder});
-        if (!hasOption(words, "--stats") && !hasOption(words, "--replay"))
+        const bool runs = words.front() == "run";
+        if ((runs || words.front() == "export") && !hasOption(words, "--out")) words.insert(words.end(), {"--out", kTaskFolder});
+        if (runs && !hasOption(words, "--stats") && !hasOption(words, "--replay"))
             words.insert(words.end(), {"--stats", fmt::format("{}/stats.json", kTaskFolder)});
     }
 
@@ -174,7 +199,7 @@ class SweepReader {
             if (!text.isString()) return wrong(text, "a command must be a text");
             Result<std::vector<std::string>> words = split(text);
             if (!words) return words.error();
-            if (words->front() == "run") addOutputs(*words);
+            addOutputs(*words);
             sweep_.commands.push_back({std::move(*words), placeAt(text)});
         }
         return ok();
@@ -349,8 +374,8 @@ class SweepReader {
         return ok();
     }
 
-    // Every {NAME} is known, and every parameter is used.
-    Status checkBraces() const {
+    // Every {NAME} is known, and every parameter is used; which of them each `run` is given.
+    Status checkBraces() {
         std::vector<std::string> known = {"task"};
         for (const SweepParameter& parameter : sweep_.parameters) known.push_back(parameter.name);
         bool runs = false;
@@ -371,7 +396,8 @@ class SweepReader {
                         near.empty() ? "add it to `parameters`, or write {{ for a brace" : fmt::format("did you mean {{{}}}?", near)));
                 }
         }
-        for (const SweepParameter& parameter : sweep_.parameters) {
+        for (size_t p = 0; p < sweep_.parameters.size(); ++p) {
+            const SweepParameter& parameter = sweep_.parameters[p];
             const std::string braces = fmt::format("{{{}}}", parameter.name);
             const bool named = std::any_of(sweep_.commands.begin(), sweep_.commands.end(), [&](const SweepCommand& command) {
                 return std::any_of(command.words.begin(), command.words.end(),
@@ -380,8 +406,21 @@ class SweepReader {
             if (!named && !runs)
                 return badInput(fmt::format("{}: no command uses {}; write {} in a command, or use the verb run", parameter.place,
                                             parameter.name, braces));
+            for (SweepCommand& command : sweep_.commands)
+                if (command.words.front() == "run" && (!named || isOfScenes(parameter.name)) && !setsItself(command, parameter.name))
+                    command.set.push_back(p);
         }
         return ok();
+    }
+
+    // Whether a command has --set NAME=...
+    static bool setsItself(const SweepCommand& command, const std::string& name) {
+        const std::string assigned = name + "=", joined = "--set=" + assigned;
+        for (size_t k = 0; k < command.words.size(); ++k)
+            if (command.words[k].starts_with(joined) ||
+                (k > 0 && command.words[k - 1] == "--set" && command.words[k].starts_with(assigned)))
+                return true;
+        return false;
     }
 
     std::string_view text_;
@@ -398,7 +437,7 @@ Result<Sweep> readSweep(std::string_view text, const std::string& file) { return
 
 std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command, size_t task, const std::string& taskFolder) {
     std::vector<std::string> words;
-    words.reserve(command.words.size() + 2 * sweep.parameters.size());
+    words.reserve(command.words.size() + 2 * command.set.size());
     for (const std::string& word : command.words) {
         std::string made;
         for (size_t at = 0; at < word.size(); ++at) {
@@ -416,15 +455,9 @@ std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command
         }
         words.push_back(std::move(made));
     }
-    if (words.front() != "run") return words;
-    for (const SweepParameter& parameter : sweep.parameters) {
-        const std::string braces = fmt::format("{{{}}}", parameter.name);
-        bool named = false;
-        for (const SweepCommand& each : sweep.commands)
-            for (const std::string& word : each.words) named = named || word.find(braces) != std::string::npos;
-        if (named) continue;
+    for (const size_t p : command.set) {
         words.emplace_back("--set");
-        words.push_back(fmt::format("{}={}", parameter.name, parameter.values[task]));
+        words.push_back(fmt::format("{}={}", sweep.parameters[p].name, sweep.parameters[p].values[task]));
     }
     return words;
 }
@@ -451,12 +484,29 @@ Status checkProgram(const std::string& program, const std::string& place) {
     return ok();
 }
 
+// Error (badInput): a verb would write its default output, which all tasks share.
+Status checkDefaults(const SweepCommand& command) {
+    struct Default {
+        const char *verb, *option, *instead;
+    };
+    for (const Default& row :
+         {Default{"voxelize", "--out", "/model.rvox"}, Default{"join", "--video", "/joined.mp4"}, Default{"chart", "--out", ""}}) {
+        const std::vector<std::string>& words = command.words;
+        if (words.front() != row.verb || hasOption(words, row.option)) continue;
+        if (hasOption(words, "--point") || hasOption(words, "--sweep")) continue;  // of chart: another file is its output
+        return badInput(fmt::format("{}: without {}, tasks of {} may write the same file; add for example {} {}{}", command.place,
+                                    row.option, row.verb, row.option, kTaskFolder, row.instead));
+    }
+    return ok();
+}
+
 // The files and folders that tasks write, by the task. Error (badInput): two tasks write the same one.
 class TaskOutputs {
   public:
     Status add(const std::vector<std::string>& words, size_t task, const std::string& place) {
         for (size_t k = 1; k < words.size(); ++k)
-            for (const char* name : {"--out", "--stats", "--video", "--trace", "--save", "--record", "--json"}) {
+            for (const char* name : {"--out", "--stats", "--video", "--trace", "--save", "--record", "--json", "--slices", "--picture",
+                                     "--pictures", "--markdown", "--scene", "--sweep"}) {
                 if (!isOption(words[k], name)) continue;
                 const size_t length = std::string_view(name).size();
                 const std::string path = words[k].size() > length ? words[k].substr(length + 1) : k + 1 < words.size() ? words[k + 1] : "";
@@ -469,18 +519,51 @@ class TaskOutputs {
         return ok();
     }
 
+    bool has(const std::string& path) const { return tasks_.contains(fs::path(path).lexically_normal().string()); }
+
   private:
     std::map<std::string, size_t> tasks_;
+};
+
+// Recordings and states that runs read, by their paths.
+class TaskInputs {
+  public:
+    void add(const std::string& path, const SweepCommand& command, bool first) {
+        if (!path.empty() && path.find(kTaskFolder) == std::string::npos) inputs_.emplace(path, Input{&command, first});
+    }
+
+    // Adds them to `files`, but for those that the tasks themselves write. Error (badInput): one cannot be read, and no command before its
+    // own may make it.
+    Status addTo(std::set<std::string>& files, const TaskOutputs& outputs) const {
+        for (const auto& [path, input] : inputs_) {
+            std::error_code none;
+            if (outputs.has(path) || (!input.first && !fs::exists(path, none))) continue;
+            if (Status readable = checkInput(path); !readable)
+                return badInput(fmt::format("{}: {}", input.command->place, readable.error().message));
+            files.insert(path);
+        }
+        return ok();
+    }
+
+  private:
+    struct Input {
+        const SweepCommand* command;
+        bool first;  // of the commands
+    };
+    std::map<std::string, Input> inputs_;
 };
 
 }  // namespace
 
 Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
     std::set<std::string> files;
+    TaskInputs inputs;
     TaskOutputs outputs;
     std::error_code error;
     fs::current_path(sweep.folder, error);
     if (error) return failed(fmt::format("the folder {} cannot be entered: {}", sweep.folder, error.message()));
+    for (const SweepCommand& command : sweep.commands)
+        if (Status named = sweep.tasks > 1 ? checkDefaults(command) : ok(); !named) return named.error();
     for (size_t task = 0; task < sweep.tasks; ++task)
         for (const SweepCommand& command : sweep.commands) {
             std::vector<std::string> words = wordsOf(sweep, command, task, kTaskFolder);
@@ -492,6 +575,8 @@ Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
             const auto read = readRun({words.begin() + 1, words.end()});
             if (read && *read) {
                 for (const SceneInput& input : inputsOf((*read)->scene)) files.insert(input.path);
+                for (const std::string& path : {(*read)->replay, (*read)->resume})
+                    inputs.add(path, command, &command == sweep.commands.data());
                 continue;
             }
             if (read) return badInput(fmt::format("{}: --help is no command of a sweep; leave it out", command.place));
@@ -502,6 +587,7 @@ Result<std::set<std::string>> checkTasks(const Sweep& sweep) {
                 if (why.find(parameter.name + "=") != std::string::npos) place = parameter.place;
             return Error{fmt::format("{}: task {}: {}", place, task, why), read.error().fault};
         }
+    if (Status added = inputs.addTo(files, outputs); !added) return added.error();
     return files;
 }
 

@@ -25,8 +25,10 @@ struct SweepParameter {
 };
 
 struct SweepCommand {
-    std::vector<std::string> words;  // the first is a verb of rivulet, or the path of another program; `run` with --out and --stats
-    std::string place;               // as SweepParameter::place
+    std::vector<std::string>
+        words;                     // the first is a verb of rivulet, or the path of another program; `run` and `export` with their outputs
+    std::string place;             // as SweepParameter::place
+    std::vector<size_t> set = {};  // of `run`: the parameters that follow as --set NAME=VALUE
 };
 
 struct Sweep {
@@ -42,13 +44,13 @@ struct Sweep {
 // words, a name in braces that is neither `task` nor a parameter, a parameter that no command uses.
 Result<Sweep> readSweep(std::string_view text, const std::string& file);
 
-// The command's words for one task: {task} is `taskFolder`, {NAME} a parameter, {{ a brace. The parameters that no command names in braces
-// follow a command of the verb `run`, as --set NAME=VALUE.
+// The command's words for one task: {task} is `taskFolder`, {NAME} a parameter, {{ a brace. A command of the verb `run` is followed by
+// --set NAME=VALUE of each parameter of a scene that it does not set itself, and of each that no command names in braces.
 std::vector<std::string> wordsOf(const Sweep& sweep, const SweepCommand& command, size_t task, const std::string& taskFolder);
 
 // Checks that the verb or program of each command exists, that no two tasks write the same file, and the arguments and the scene of each
-// `run` as `rivulet run` does; changes the working directory to the sweep's folder. Returns the files that the scenes read. Error: with the
-// place of the parameter that the message names, or of the command.
+// `run` as `rivulet run` does; changes the working directory to the sweep's folder. Returns the files that the runs read: of scenes, and
+// recordings and states that no task writes. Error: with the place of the parameter that the message names, or of the command.
 Result<std::set<std::string>> checkTasks(const Sweep& sweep);
 
 }  // namespace rivulet

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -49,7 +50,24 @@ bool sweepGrew(const Sweep& before, const Sweep& now) {
 // Whether a folder that holds this entry, and no sweep.json, is another's: a sweep that was killed at its start leaves the others.
 bool isForeign(const fs::path& entry) {
     const std::string name = entry.filename().string();
-    return name != "tasks" && name != "tasks.txt" && name != "origin.json" && !name.starts_with(".rivulet-");
+    return name != "tasks" && name != "tasks.txt" && name != "origin.json" && name != "sweep.lock" && !name.starts_with(".rivulet-");
+}
+
+// Checks the tasks and adds the files that they read.
+Status addScenes(const Sweep& sweep, SweepOrigin& origin) {
+    const Result<std::set<std::string>> scenes = checkTasks(sweep);
+    if (!scenes) return scenes.error();
+    for (const std::string& name : *scenes) origin.scenes.emplace(originName(name, sweep.folder), "");
+    return hashScenes(origin);
+}
+
+// False: errno says why.
+bool locks(const Descriptor& file, bool wait) {
+    int locked = -1;
+    do {
+        locked = ::flock(file.get(), wait ? LOCK_EX : LOCK_EX | LOCK_NB);
+    } while (locked != 0 && errno == EINTR);
+    return locked == 0;
 }
 
 std::string programPath() {
@@ -81,36 +99,51 @@ Status SweepFolder::writeTasks(const Sweep& sweep, int threads) const {
 }
 
 Status SweepFolder::prepare(const Sweep& sweep, std::string_view text, int threads) const {
-    const std::string kept = file("sweep.json"), source = file("origin.json");
     SweepOrigin origin{.folder = sweep.folder, .scenes = {}};
-    bool checked = false;
-    if (isPrepared()) {
-        const Result<std::string> before = readFile(kept);
-        if (!before) return before.error();
-        Result<SweepOrigin> made = readOrigin(source);
-        if (!made) return made.error();
-        if (Status same = checkOrigin(*made, sweep.folder, path_); !same) return same;
-        origin.scenes = std::move(made->scenes);
-        checked = *before == text;
-        if (const Result<Sweep> old = readSweep(*before, kept); !checked && (!old || !sweepGrew(*old, sweep)))
-            return badInput(
-                fmt::format("{} has changed since its tasks in {} were made, and not only by more tasks at the end; choose another "
-                            "--output, or delete the folder",
-                            sweep.file, path_));
-        if (checked && made->folder == sweep.folder) return writeTasks(sweep, threads);
-    } else if (const std::vector<fs::path> others = entriesOf(path_); std::any_of(others.begin(), others.end(), isForeign)) {
-        return badInput(fmt::format("{} exists and is no folder of a sweep; choose another --output", path_));
-    }
-    if (!checked) {
-        const Result<std::set<std::string>> scenes = checkTasks(sweep);
-        if (!scenes) return scenes.error();
-        for (const std::string& name : *scenes) origin.scenes.emplace(originName(name, sweep.folder), "");
-        if (Status hashed = hashScenes(origin); !hashed) return hashed;
-    }
+    const auto check = [&] {
+        const std::vector<fs::path> others = entriesOf(path_);
+        if (std::any_of(others.begin(), others.end(), isForeign))
+            return Status(badInput(fmt::format("{} exists and is no folder of a sweep; choose another --output", path_)));
+        return addScenes(sweep, origin);
+    };
+    // A sweep that is refused leaves nothing, no lock either.
+    const bool checked = !isPrepared();
+    if (checked)
+        if (Status sound = check(); !sound) return sound;
+    if (Status made = makeFolder(path_); !made) return made;
+    const Result<Descriptor> lock = lockFile(file("sweep.lock"), true);
+    if (!lock) return lock.error();
+    if (isPrepared()) return adopt(sweep, text, threads);
+    if (!checked)
+        if (Status sound = check(); !sound) return sound;
+    return write(sweep, text, threads, origin);
+}
+
+// Of a folder that is prepared: that it is the sweep's, whose tasks may be more by now.
+Status SweepFolder::adopt(const Sweep& sweep, std::string_view text, int threads) const {
+    const std::string kept = file("sweep.json");
+    const Result<std::string> before = readFile(kept);
+    if (!before) return before.error();
+    Result<SweepOrigin> origin = readOrigin(file("origin.json"));
+    if (!origin) return origin.error();
+    if (Status same = checkOrigin(*origin, sweep.folder, path_); !same) return same;
+    const bool moved = origin->folder != sweep.folder;
+    origin->folder = sweep.folder;
+    if (*before == text) return moved ? write(sweep, text, threads, *origin) : writeTasks(sweep, threads);
+    if (const Result<Sweep> old = readSweep(*before, kept); !old || !sweepGrew(*old, sweep))
+        return badInput(
+            fmt::format("{} has changed since its tasks in {} were made, and not only by more tasks at the end; choose another "
+                        "--output, or delete the folder",
+                        sweep.file, path_));
+    if (Status added = addScenes(sweep, *origin); !added) return added;
+    return write(sweep, text, threads, *origin);
+}
+
+Status SweepFolder::write(const Sweep& sweep, std::string_view text, int threads, const SweepOrigin& origin) const {
     if (Status made = makeFolder(file("tasks")); !made) return made;
     if (Status written = writeTasks(sweep, threads); !written) return written;
-    if (Status written = writeOrigin(origin, source); !written) return written;
-    return writeFileAtomic(kept, text);
+    if (Status written = writeOrigin(origin, file("origin.json")); !written) return written;
+    return writeFileAtomic(file("sweep.json"), text);
 }
 
 bool SweepFolder::isPrepared() const {
@@ -147,17 +180,20 @@ std::vector<size_t> SweepFolder::endedTasks() const {
     return tasks;
 }
 
-Descriptor SweepFolder::lock(size_t task, std::optional<Error>& error, bool wait) const {
-    const std::string name = ended(task) + ".lock";
+Result<Descriptor> SweepFolder::lock(size_t task, bool wait) const { return lockFile(ended(task) + ".lock", wait); }
+
+bool SweepFolder::isHeld(size_t task) const {
+    const Descriptor file = openDescriptor(ended(task) + ".lock", O_RDWR);
+    return file.valid() && !hasEnded(task) && !locks(file, false) && errno == EWOULDBLOCK;
+}
+
+void SweepFolder::removeLock(size_t task) const { (void)::unlink((ended(task) + ".lock").c_str()); }
+
+Result<Descriptor> lockFile(const std::string& name, bool wait) {
     Descriptor file = openDescriptor(name, O_RDWR | O_CREAT);
-    int locked = -1;
-    do {
-        locked = file.valid() ? ::flock(file.get(), wait ? LOCK_EX : LOCK_EX | LOCK_NB) : -1;
-    } while (file.valid() && locked != 0 && errno == EINTR);
-    if (locked == 0) return file;
-    const int why = errno;
-    if (!file.valid() || why != EWOULDBLOCK) error = failed(fmt::format("{} cannot be locked: {}", name, reasonOf(why)));
-    return {};
+    if (file.valid() && locks(file, wait)) return file;
+    if (file.valid() && errno == EWOULDBLOCK) return Descriptor();
+    return failed(fmt::format("{} cannot be locked: {}", name, reasonOf(errno)));
 }
 
 }  // namespace rivulet

@@ -1,6 +1,6 @@
 // The folder of a sweep, which several processes use at a time:
 //
-//     sweep.json      the sweep, as it was given; tasks read it
+//     sweep.json      the sweep, as it was given; tasks read it; sweep.lock: locked while it and the next two are written
 //     origin.json     the folder of the commands, and what the tasks depend on (sweep_origin.h)
 //     tasks.txt       one command line a task
 //     tasks/7         a task that has ended: what its commands wrote, and log.txt, what they printed
@@ -18,6 +18,8 @@
 
 namespace rivulet {
 
+struct SweepOrigin;
+
 struct TableSize {
     size_t rows = 0;     // without the header
     size_t numbers = 0;  // columns that come from stats.json
@@ -34,7 +36,7 @@ class SweepFolder {
 
     // Writes sweep.json, origin.json and tasks.txt, unless they are there with the same content. `text`: the content of sweep.file;
     // `threads`: of each task. Error (badInput): the folder is that of another sweep, unless `sweep` has the same tasks and then more; as
-    // checkOrigin and checkTasks. (failed): not writable.
+    // checkOrigin and checkTasks. (failed): not writable. Of sweeps that start at once, one prepares the folder and the others find it so.
     Status prepare(const Sweep& sweep, std::string_view text, int threads) const;
 
     bool isPrepared() const;
@@ -43,12 +45,16 @@ class SweepFolder {
 
     bool hasEnded(size_t task) const;
     std::vector<size_t> endedTasks() const;  // in order
-    // Locks a task; `wait`: until another process, and what it started, has released it. Not valid: another process has locked it, or
-    // `error` gives the reason.
-    Descriptor lock(size_t task, std::optional<Error>& error, bool wait = false) const;
+    // Locks a task, as lockFile.
+    Result<Descriptor> lock(size_t task, bool wait) const;
+    // Whether another process runs a task; leaves no lock.
+    bool isHeld(size_t task) const;
+    // Removes the lock of a task that has ended: nobody needs it any more.
+    void removeLock(size_t task) const;
 
     // Adds the tasks that have ended to results.csv and removes those without a folder; `again` is read again. The bytes depend on
-    // nothing but the tasks; `next` is closed before the tasks are listed. Returns the size of the table. Error (failed): not writable.
+    // nothing but the tasks; `next` is closed before the tasks are listed. Where a task has ended that `sweep` lacks, because the sweep has
+    // grown, it is read again. Returns the size of the table. Error (failed): not writable.
     Result<TableSize> collect(const Sweep& sweep, std::optional<size_t> again = std::nullopt, Descriptor* next = nullptr) const;
     // The same for a task that has just ended, unless another process is about to do it: the table is read and written once for all tasks
     // that end meanwhile. When the last process has ended, it is complete.
@@ -57,9 +63,15 @@ class SweepFolder {
     Descriptor takeTable() const;
 
   private:
+    Status adopt(const Sweep& sweep, std::string_view text, int threads) const;
+    Status write(const Sweep& sweep, std::string_view text, int threads, const SweepOrigin& origin) const;
     Status writeTasks(const Sweep& sweep, int threads) const;
     std::string path_;
 };
+
+// Locks a file (flock), which is made if it does not exist; `wait`: until another process, and what it started, has released it. Not valid:
+// another process has locked it. Error (failed): it cannot be locked.
+Result<Descriptor> lockFile(const std::string& name, bool wait);
 
 // The words of the command that runs one task, and a command as a shell reads it.
 std::vector<std::string> taskLine(const Sweep& sweep, const SweepFolder& folder, size_t task, int threads);

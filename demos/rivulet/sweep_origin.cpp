@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <span>
+#include <vector>
 
 #include "engine/compute/disk_cache.h"
 #include "engine/core/file.h"
+#include "engine/core/file_system.h"
+#include "engine/core/input_file.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/json_text.h"
 
@@ -18,10 +23,25 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRemedy = "choose another --output, or delete the folder";
 
-Result<std::string> hashOfFile(const std::string& file) {
-    const Result<std::string> bytes = readFile(file);
-    if (!bytes) return bytes.error();
-    return hashOf(std::as_bytes(std::span(*bytes)));
+// The hash of a file's bytes; of a long file, which need not fit into memory, that of the hashes of its parts.
+Result<std::string> hashOfFile(const std::string& name) {
+    constexpr size_t kPart = size_t{64} << 20U;
+    const Result<Descriptor> file = openInput(name);
+    if (!file) return file.error();
+    std::string hashes;
+    std::vector<std::byte> part(static_cast<size_t>(std::min<uint64_t>(kPart, factsOf(*file).bytes + 1)));
+    for (uint64_t at = 0;;) {
+        size_t filled = 0;
+        while (filled < part.size()) {
+            const std::ptrdiff_t got = readAt(*file, part.data() + filled, part.size() - filled, at + filled);
+            if (got < 0) return badInput(fmt::format("{} cannot be read: {}", name, reasonOf(errno)));
+            if (got == 0) break;
+            filled += static_cast<size_t>(got);
+        }
+        if (filled > 0 || at == 0) hashes += hashOf(std::span(part).first(filled));
+        at += filled;
+        if (filled < part.size()) return at <= kPart ? hashes : hashOf(std::as_bytes(std::span(hashes)));
+    }
 }
 
 }  // namespace
@@ -79,7 +99,7 @@ Status checkOrigin(const SweepOrigin& origin, const std::string& folder, const s
         const Result<std::string> now = hashOfFile(file);
         if (!now)
             return badInput(
-                fmt::format("a scene that the tasks in {} read is missing: {}; restore it, or {}", tasks, now.error().message, kRemedy));
+                fmt::format("a file that the tasks in {} read is missing: {}; restore it, or {}", tasks, now.error().message, kRemedy));
         if (*now != hash)
             return badInput(fmt::format("{} is not the file that the tasks in {} were made with; restore it, or {}", file, tasks, kRemedy));
     }

@@ -79,29 +79,29 @@ Status runCommands(const Sweep& sweep, const SweepFolder& folder, size_t task, i
 }  // namespace
 
 int runSweepTask(const Sweep& sweep, const SweepFolder& folder, size_t task, int threads) {
-    std::optional<Error> error;
-    Descriptor lock;
+    Result<Descriptor> lock = Descriptor();
     if (!folder.hasEnded(task)) {
-        lock = folder.lock(task, error);
-        if (!lock.valid() && !error) {
+        lock = folder.lock(task, false);
+        if (lock && !lock->valid()) {
             fmt::print("task {} is run by another process; waiting for its end\n", task);
             flushOutput();
-            lock = folder.lock(task, error, true);
+            lock = folder.lock(task, true);
         }
-        if (error) return report(*error);
+        if (!lock) return report(lock.error());
     }
-    if (folder.hasEnded(task)) {  // before, or while it was being locked
+    if (folder.hasEnded(task)) {  // before, or while it was being locked; its runner may have been killed before it removed the lock
+        folder.removeLock(task);
         fmt::print("task {} has ended before\n", task);
         return kDone;
     }
     setThreads(threads);
     if (!endWithParallel()) return kFailed;
-    if (Status done = runCommands(sweep, folder, task, lock.get()); !done) return report(done.error());
+    if (Status done = runCommands(sweep, folder, task, lock->get()); !done) return report(done.error());
     const std::string part = folder.part(task), name = folder.ended(task);
     std::error_code renamed;
     fs::rename(part, name, renamed);
     if (renamed) return report(failed(fmt::format("{} cannot be renamed to {}: {}", part, name, renamed.message())));
-    (void)::unlink((name + ".lock").c_str());
+    folder.removeLock(task);
     if (Status collected = folder.collectSoon(sweep, task); !collected) return report(collected.error());
     return kDone;
 }
@@ -168,8 +168,7 @@ class SweepJobs {
         if (!waiting_.empty()) return true;
         for (size_t k = 0; k < elsewhere_.size(); ++k) {
             const size_t task = elsewhere_[k];
-            std::optional<Error> error;
-            if (!folder_.hasEnded(task) && !folder_.lock(task, error).valid() && !error) continue;
+            if (folder_.isHeld(task)) continue;
             elsewhere_.erase(elsewhere_.begin() + static_cast<ptrdiff_t>(k));
             waiting_.push_back(task);
             return true;
@@ -180,7 +179,7 @@ class SweepJobs {
     Status start() {
         const size_t task = waiting_.front();
         waiting_.pop_front();
-        if (std::optional<Error> error; !folder_.hasEnded(task) && !folder_.lock(task, error).valid() && !error) {
+        if (folder_.isHeld(task)) {
             elsewhere_.push_back(task);
             return ok();
         }

@@ -1,10 +1,7 @@
 // The table of results.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <filesystem>
 #include <map>
@@ -82,6 +79,7 @@ class ResultTable {
     void take(std::string_view csv, const std::set<size_t>& ended) {
         size_t at = csv.find('\n');
         const std::string_view header = csv.substr(0, at);
+        if (csv.find('\r') != std::string_view::npos) return;  // saved by a spreadsheet
         if (at == std::string_view::npos || !header.starts_with(fixed_) || (header.size() > fixed_.size() && header[fixed_.size()] != ','))
             return;
         std::vector<std::string> columns = tableCells(header);
@@ -167,9 +165,8 @@ Result<std::vector<std::pair<std::string, std::string>>> numbersOf(const std::st
 }
 
 Descriptor SweepFolder::takeTable() const {
-    Descriptor next = openDescriptor(file("results.next"), O_RDWR | O_CREAT);
-    if (next.valid() && ::flock(next.get(), LOCK_EX | LOCK_NB) == 0) return next;
-    return {};
+    Result<Descriptor> next = lockFile(file("results.next"), false);
+    return next ? std::move(*next) : Descriptor();
 }
 
 // Two locks: one process collects, and one waits for it. A task that ends while another waits is in the table of that one, which reads the
@@ -181,17 +178,24 @@ Status SweepFolder::collectSoon(const Sweep& sweep, size_t task) const {
     return collected ? ok() : Status(collected.error());
 }
 
-Result<TableSize> SweepFolder::collect(const Sweep& sweep, std::optional<size_t> again, Descriptor* next) const {
-    const std::string name = file("results.csv"), lockName = file("results.lock");
-    const Descriptor lock = openDescriptor(lockName, O_RDWR | O_CREAT);
-    int locked = -1;
-    do {
-        locked = lock.valid() ? ::flock(lock.get(), LOCK_EX) : -1;
-    } while (lock.valid() && locked != 0 && errno == EINTR);
-    if (locked != 0) return failed(fmt::format("{} cannot be locked: {}", lockName, reasonOf(errno)));
+Result<TableSize> SweepFolder::collect(const Sweep& given, std::optional<size_t> again, Descriptor* next) const {
+    const std::string name = file("results.csv");
+    const Result<Descriptor> lock = lockFile(file("results.lock"), true);
+    if (!lock) return lock.error();
     if (next != nullptr) (void)next->close();
+    const std::vector<size_t> endedNow = endedTasks();
+    std::optional<Sweep> grown;  // since this process read it
+    if (!endedNow.empty() && endedNow.back() >= given.tasks) {
+        const std::string kept = file("sweep.json");
+        const Result<std::string> text = readFile(kept);
+        if (!text) return text.error();
+        Result<Sweep> read = readSweep(*text, kept);
+        if (!read) return read.error();
+        grown = std::move(*read);
+    }
+    const Sweep& sweep = grown ? *grown : given;
     std::set<size_t> all;
-    for (const size_t task : endedTasks())
+    for (const size_t task : endedNow)
         if (task < sweep.tasks) all.insert(task);
     ResultTable table(sweep);
     std::string before;

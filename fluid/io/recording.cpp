@@ -25,6 +25,7 @@ constexpr uint32_t kMostAbout = 1U << 20U;  // bytes of the text
 constexpr uint32_t kFrame = 0x4D415246, kIndex = 0x58444E49;
 constexpr size_t kArrays = 12;
 constexpr uint32_t kHalves = 1, kDryBit = 8;
+constexpr std::string_view kRunVersion = "\nrun.version = ", kRunDevice = "\nrun.device = ", kRunScene = "\nrun.scene = ";
 constexpr float kMostRecorded = 1e15F;  // m, or any other unit: the square still is a float
 
 struct Header {
@@ -194,6 +195,22 @@ bool drawable(RecordedFrame& f) {
 }
 
 }  // namespace
+
+std::string textOf(const RecordedRun& run) {
+    return fmt::format("{}{}{}{}{}{}", kRunVersion, run.version, kRunDevice, run.device, kRunScene, run.scene);
+}
+
+// A line end in the scene's JSON is never followed by the name of the version.
+size_t endOfAbout(std::string_view text) { return std::min(text.rfind(kRunVersion), text.size()); }
+
+RecordedRun recordedRun(const std::string& text) {
+    const size_t version = endOfAbout(text), device = text.find(kRunDevice, version), scene = text.find(kRunScene, device);
+    if (scene == std::string::npos) return {};
+    const auto between = [&text](size_t from, std::string_view name, size_t to) {
+        return text.substr(from + name.size(), to - from - name.size());
+    };
+    return {between(version, kRunVersion, device), between(device, kRunDevice, scene), text.substr(scene + kRunScene.size())};
+}
 
 Result<RecordingWriter> RecordingWriter::open(const std::string& path, const std::string& about) {
     Result<NewFile> file = NewFile::open(path);

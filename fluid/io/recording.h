@@ -11,6 +11,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/descriptor.h"
@@ -38,6 +39,16 @@ struct RecordedFrame {
     std::vector<vec3> corners;             // m, of solids that bend, one after the other
     std::vector<DryVolume> dry;            // as FluidWorld::dry
 };
+
+// The run that a recording's text names: any lines of the program that writes it, then these.
+struct RecordedRun {
+    std::string version;  // of the program that recorded; all are "" if its text names no run
+    std::string device;   // "cpu: NAME"
+    std::string scene;    // as JSON: what differs from the defaults, at the time when the recording began
+};
+std::string textOf(const RecordedRun& run);  // to be added to a text
+RecordedRun recordedRun(const std::string& text);
+size_t endOfAbout(std::string_view text);  // where the part begins that only names the run
 
 class RecordingWriter {
   public:

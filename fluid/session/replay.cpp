@@ -12,11 +12,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr std::string_view kVersion = "\nrun.version = ", kDevice = "\nrun.device = ", kScene = "\nrun.scene = ";
-
-// Where the part begins that only names the run; a line end in the scene's JSON is never followed by it.
-size_t endOfAbout(std::string_view text) { return std::min(text.rfind(kVersion), text.size()); }
-
 std::string_view takeLine(std::string_view& text) {
     const size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
@@ -58,17 +53,9 @@ std::string recordedText(const Session& session) {
     SceneFile scene = session.scene(), none;
     const VisitFn defaults = [&none](ParamVisitor& v) { none.visit(v); };
     const Device& device = session.world().device();
-    return fmt::format("{}{}{}{}{}: {}{}{}", aboutOf(scene), kVersion, RIVULET_VERSION, kDevice, backendName(device.backend()),
-                       device.info().name, kScene, writeJson([&scene](ParamVisitor& v) { scene.visit(v); }, &defaults));
-}
-
-RecordedRun recordedRun(const std::string& text) {
-    const size_t version = endOfAbout(text), device = text.find(kDevice, version), scene = text.find(kScene, device);
-    if (scene == std::string::npos) return {};
-    const auto between = [&text](size_t from, std::string_view name, size_t to) {
-        return text.substr(from + name.size(), to - from - name.size());
-    };
-    return {between(version, kVersion, device), between(device, kDevice, scene), text.substr(scene + kScene.size())};
+    return aboutOf(scene) + textOf({.version = RIVULET_VERSION,
+                                    .device = fmt::format("{}: {}", backendName(device.backend()), device.info().name),
+                                    .scene = writeJson([&scene](ParamVisitor& v) { scene.visit(v); }, &defaults)});
 }
 
 RecordedFrame frameOf(const Session& session) {

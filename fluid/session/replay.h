@@ -26,12 +26,6 @@ struct FluidView;
 std::string aboutOf(const SceneFile& scene);
 // The text of a recording: aboutOf the session's scene, then the run.
 std::string recordedText(const Session& session);
-struct RecordedRun {
-    std::string version;  // of the program that recorded; all are "" if an earlier version recorded, which did not store them
-    std::string device;   // "cpu: NAME"
-    std::string scene;    // as JSON: what differs from the defaults, at the time when the recording began
-};
-RecordedRun recordedRun(const std::string& text);
 // The session's frame as shown now. Waits for the device.
 RecordedFrame frameOf(const Session& session);
 // The session's world or recorded frame, as buffers. Error: as FluidUpload::view.

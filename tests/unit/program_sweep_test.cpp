@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include "tests/unit/program_runner.h"
 
@@ -96,7 +97,9 @@ TEST(ProgramSweep, TheTableDoesNotDependOnTheOrder) {
     // A table that was lost, or that lacks a row, is made again from the tasks, byte for byte.
     const std::string table = scratch.text("one/results.csv");
     const size_t row = table.find("\n4,");
-    for (const std::string& damaged : {std::string(), table.substr(0, row + 1), table.substr(0, row + 9)}) {
+    std::string ofASpreadsheet = table;  // with the line ends of RFC 4180
+    for (size_t at = 0; (at = ofASpreadsheet.find('\n', at)) != std::string::npos; at += 2) ofASpreadsheet.insert(at, 1, '\r');
+    for (const std::string& damaged : {std::string(), table.substr(0, row + 1), table.substr(0, row + 9), ofASpreadsheet}) {
         scratch.file("one/results.csv", damaged.empty() ? " " : damaged);
         ASSERT_EQ(runProgram({"sweep", "s.json", "--output", "one"}, in(scratch)).code, 0);
         EXPECT_EQ(scratch.text("one/results.csv"), table);
@@ -287,6 +290,78 @@ TEST(ProgramSweep, ATaskThatIsHeldElsewhereIsDoneBeforeItReportsSuccess) {
     EXPECT_TRUE(fs::exists(scratch.path() / "s/tasks/1"));
 }
 
+// The runner was killed between the end of its task and the removal of the lock.
+TEST(ProgramSweep, TheLockOfATaskThatHasEndedIsRemoved) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code, 0);
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"sweep", "s.json", "--task", "0"}, {"sweep", "s.json"}}) {
+        fs::remove_all(scratch.path() / "s/tasks/0");
+        fs::remove(scratch.path() / "held");
+        Outcome waiting;
+        RunOptions options = in(scratch);
+        options.whileRunning = [&](pid_t) {
+            if (waiting.code < 0 && fs::exists(scratch.path() / "held")) waiting = runProgram(words, in(scratch));
+            return 0;
+        };
+        ASSERT_EQ(runCommand({"/usr/bin/flock", "s/tasks/0.lock", "/bin/sh", "-c", "touch held; sleep 0.5; mkdir s/tasks/0"}, options).code,
+                  0);
+        EXPECT_EQ(waiting.code, 0) << waiting.err;
+        EXPECT_FALSE(fs::exists(scratch.path() / "s/tasks/0.lock")) << words.size();
+    }
+}
+
+// Two sweeps that start at once: the second waits while the first prepares the folder.
+TEST(ProgramSweep, DifferentSweepsNeverShareAFolder) {
+    const Scratch scratch;
+    scratch.file("s.json", R"({"command": "/bin/true {k}", "parameters": {"k": [1, 2]}})");
+    scratch.file("t.json", R"({"command": "/bin/true {k}", "parameters": {"k": [3, 4]}})");
+    ASSERT_EQ(runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code, 0);
+    fs::create_directory(scratch.path() / "both");
+    Outcome second;
+    RunOptions first = in(scratch);
+    first.whileRunning = [&](pid_t) {
+        if (second.code < 0 && fs::exists(scratch.path() / "held"))
+            second = runProgram({"sweep", "t.json", "--output", "both"}, in(scratch));
+        return 0;
+    };
+    const char* prepare = "touch held; sleep 0.3; cp s/sweep.json s/origin.json s/tasks.txt both";
+    ASSERT_EQ(runCommand({"/usr/bin/flock", "both/sweep.lock", "/bin/sh", "-c", prepare}, first).code, 0);
+    expectRefusal(second, 2, "t.json has changed since its tasks in ");
+    EXPECT_FALSE(fs::exists(scratch.path() / "both/results.csv"));
+    EXPECT_EQ(scratch.text("both/sweep.json"), scratch.text("s.json"));
+}
+
+// Processes that began before the sweep grew write the rows of the new tasks, too.
+TEST(ProgramSweep, ATableHasTheTasksThatASweepGrewBy) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"sweep", "s.json", "--task", "0"}, {"sweep", "s.json"}}) {
+        const Scratch scratch;
+        const auto sweep = [&](const char* values) {
+            scratch.file(
+                "s.json",
+                fmt::format(R"x({{"command": "/bin/sh -c 'test {{k}} != 0 || while ! test -f go; do sleep 0.02; done'", "parameters": )x"
+                            R"x({{"k": {}}}}})x",
+                            values));
+            return runProgram({"sweep", "s.json", "--dry-run"}, in(scratch)).code;
+        };
+        ASSERT_EQ(sweep("[0]"), 0);
+        bool grown = false;
+        RunOptions options = in(scratch);
+        options.whileRunning = [&](pid_t) {
+            if (grown || !fs::exists(scratch.path() / "s/tasks/0.part")) return 0;
+            grown = true;
+            EXPECT_EQ(sweep("[0, 1, 2]"), 0);
+            for (const char* task : {"1", "2"}) EXPECT_EQ(runProgram({"sweep", "s.json", "--task", task}, in(scratch)).code, 0);
+            scratch.file("go", "go");
+            return 0;
+        };
+        EXPECT_EQ(runProgram(words, options).code, 0);
+        const auto rows = rowsAt(scratch, "s/results.csv");
+        ASSERT_EQ(rows.size(), 4U) << words.size();
+        EXPECT_EQ(rows[3], (std::vector<std::string>{"2", "2"}));
+    }
+}
+
 // The table is read and written once for all tasks that end while it is busy, and lacks none at the end.
 TEST(ProgramSweep, TasksThatEndTogetherAreAllInTheTable) {
     const Scratch scratch;
@@ -379,6 +454,13 @@ TEST(ProgramSweep, ErrorsNamePlaceAndRemedyAndLeaveNothing) {
     refused(R"({"command": "./small.json"})", "./small.json is not executable");
     refused(R"({"command": "run small.json --out o", "parameters": {"fluid.viscosity": [1, 2]}})", "tasks 0 and 1 both write --out o;");
     refused(R"({"command": "run small.json --stats=a{n}", "parameters": {"n": [1, 2, 1]}})", "tasks 0 and 2 both write --stats a1");
+    refused(R"({"command": "voxelize a.obj --resolution {n}", "parameters": {"n": [8, 16]}})",
+            "s.json:1:13: without --out, tasks of voxelize may write the same file; add for example --out {task}/");
+    refused(R"({"command": "join pieces{n}", "parameters": {"n": [1, 2]}})", "add for example --video {task}/");
+    refused(R"({"command": "chart {c} --quick", "parameters": {"c": ["stability", "surface"]}})", "add for example --out {task}");
+    refused(R"({"command": "chart {c} --sweep c.json", "parameters": {"c": ["taylor_green", "all"]}})", "both write --sweep c.json");
+    refused(R"({"command": "voxelize a.obj --out {task}/a.rvox --slices s.png --resolution {n}", "parameters": {"n": [8, 16]}})",
+            "tasks 0 and 1 both write --slices s.png");
     refused("{", "s.json:1:");
     expectRefusal(runProgram({"sweep", "none.json"}, in(scratch)), 2, "none.json cannot be read");
     scratch.file("s.json", R"({"command": "/bin/true"})");
@@ -417,6 +499,50 @@ TEST(ProgramSweep, TheListOfTasksFollowsTheOptions) {
     fs::rename(scratch.path() / "s.json", scratch.path() / "t.json");
     ASSERT_EQ(runProgram({"sweep", "t.json", "--output", "s", "--dry-run"}, in(scratch)).code, 0);
     EXPECT_NE(scratch.text("s/tasks.txt").find("/t.json --output"), std::string::npos);
+}
+
+// The energy of a falling block is m (g t)^2 / 2: a parameter reaches each run that does not set it itself, whatever else it names.
+TEST(ProgramSweep, AParameterThatIsNamedInBracesReachesItsRuns) {
+    for (const std::string& commands :
+         {std::string(R"("run small.json --no-render --backend cpu --frames 3", "/bin/echo {fluid.gravity}")"),
+          std::string(R"("run small.json --no-render --backend cpu --frames 3 --trace {task}/{fluid.gravity}.json")")}) {
+        const Scratch scratch;
+        scratch.file("small.json", smallScene());
+        scratch.file("s.json", R"({"commands": [)" + commands + R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
+        expectRefusal(runProgram({"sweep", "s.json"}, in(scratch)), 2, "--set n=7: no parameter");
+        scratch.file("s.json", R"({"commands": ["/bin/echo {n}", )" + commands +
+                                   R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
+        const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
+        ASSERT_EQ(swept.code, 0) << swept.err;
+        const std::string kinetic = "\"kinetic\": ";
+        std::vector<double> energies;
+        for (const char* task : {"0", "1"}) {
+            const std::string stats = scratch.text(std::string("s/tasks/") + task + "/stats.json");
+            const size_t at = stats.find(kinetic);
+            ASSERT_NE(at, std::string::npos) << stats;
+            energies.push_back(std::stod(stats.substr(at + kinetic.size())));
+        }
+        EXPECT_NEAR(energies[0] / energies[1], 81, 1) << commands;
+    }
+    // A run that sets the parameter itself: another value would not be a vector.
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    scratch.file("s.json", R"({"command": "run small.json --no-render --frames 1 --set fluid.gravity=0,-{fluid.gravity},0",
+                               "parameters": {"fluid.gravity": [1, 2]}})");
+    const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
+    EXPECT_EQ(swept.code, 0) << swept.err;
+}
+
+TEST(ProgramSweep, AnExportWritesIntoTheFolderOfItsTask) {
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    scratch.file("s.json", R"({"command": "export small.json --format zarr --seconds 0.05 --backend cpu --set fluid.viscosity={v}",
+                               "parameters": {"v": [0.1, 1]}})");
+    const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));
+    ASSERT_EQ(swept.code, 0) << swept.err;
+    EXPECT_FALSE(fs::exists(scratch.path() / "out"));
+    EXPECT_NE(scratch.text("s/tasks/0/small.zarr/.zattrs").find("\"fluid.viscosity\": 0.1"), std::string::npos);
+    EXPECT_NE(scratch.text("s/tasks/1/small.zarr/.zattrs").find("\"fluid.viscosity\": 1"), std::string::npos);
 }
 
 TEST(ProgramSweep, ARunWritesIntoTheFolderOfItsTask) {
@@ -471,6 +597,42 @@ TEST(ProgramSweep, AFolderIsThatOfItsScenes) {
     ASSERT_NE(at, std::string::npos);
     scratch.file("s/origin.json", origin.replace(at, std::string(RIVULET_VERSION).size(), "0.0.9"));
     expectRefusal(swept("c"), 2, "were made by version 0.0.9 of rivulet");
+}
+
+// A recording or a state that tasks read, as the scenes: old and new results are never mixed.
+TEST(ProgramSweep, AFolderIsThatOfItsRecordingsAndStates) {
+    const Scratch scratch;
+    scratch.file("small.json", smallScene());
+    const auto made = [&](const char* option, const char* file, const char* frames) {
+        return runProgram({"run", "small.json", "--no-render", "--backend", "cpu", "--frames", frames, option, file}, in(scratch)).code;
+    };
+    const auto sweep = [&](const std::string& file, const std::string& commands) {
+        scratch.file(file, R"({"commands": [)" + commands + R"(], "parameters": {"n": [1, 2]}})");
+        return runProgram({"sweep", file, "--dry-run"}, in(scratch));
+    };
+    for (const auto& [option, name, reads] :
+         {std::tuple("--record", "r.rrec", R"("run small.json --replay r.rrec --frames 0:{n} --images")"),
+          std::tuple("--save", "r.rstate", R"("run small.json --resume r.rstate --frames {n}")")}) {
+        const std::string file = std::string(option + 2) + ".json";
+        expectRefusal(sweep(file, reads), 2, std::string(file) + ":1:15: " + name + " cannot be read: it does not exist");
+        ASSERT_EQ(made(option, name, "2"), 0);
+        const std::string before = scratch.text(name);
+        ASSERT_EQ(sweep(file, reads).code, 0);
+        ASSERT_EQ(made(option, name, "3"), 0);
+        expectRefusal(sweep(file, reads), 2, std::string(name) + " is not the file that the tasks in ");
+        expectRefusal(runProgram({"sweep", file, "--task", "1"}, in(scratch)), 2, "is not the file that");
+        scratch.file(name, before);
+        EXPECT_EQ(sweep(file, reads).code, 0);
+    }
+    // Not those that the tasks themselves write.
+    for (const char* commands :
+         {R"("run small.json --record {task}/r.rrec", "run small.json --replay {task}/r.rrec --frames 0:{n} --images")",
+          R"("run small.json --record r{n}.rrec", "run small.json --replay r{n}.rrec --images")",
+          R"("/bin/cp r.rrec q{n}.rrec", "run small.json --replay q{n}.rrec --images")"}) {
+        fs::remove_all(scratch.path() / "own");
+        const Outcome own = sweep("own.json", commands);
+        EXPECT_EQ(own.code, 0) << own.err;
+    }
 }
 
 // Slurm may start a task hours after its sweep was submitted.

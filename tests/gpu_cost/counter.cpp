@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -38,6 +39,7 @@ constexpr unsigned kGlobal = 1, kConstant = 2, kLocal = 3;
 
 struct Thread {
     std::array<double, kClasses> count{};
+    std::vector<unsigned> blocks = {};  // that it went through, by their order in the kernel
     double operations() const {
         double sum = 0;
         for (const double c : count) sum += c;
@@ -96,7 +98,7 @@ class Counter final : public oclgrind::Plugin {
         for (size_t w = 0; w < kWidths.size(); ++w)
             for (size_t first = 0; first < threads_.size(); first += kWidths[w]) {
                 const size_t end = std::min(first + kWidths[w], threads_.size());
-                double most = 0;
+                double most = inStep(first, end);
                 for (size_t k = first; k < end; ++k) most = std::max(most, threads_[k].operations());
                 sums_->inStep[w] += most * static_cast<double>(end - first);
             }
@@ -106,7 +108,9 @@ class Counter final : public oclgrind::Plugin {
     }
     void instructionExecuted(const oclgrind::WorkItem* item, const llvm::Instruction* instruction, const oclgrind::TypedValue&) override {
         const Cost cost = costOf(instruction);
-        if (cost.count > 0) threadOf(item).count[cost.of] += cost.count;
+        Thread& thread = threadOf(item);
+        if (cost.count > 0) thread.count[cost.of] += cost.count;
+        if (cost.begins) thread.blocks.push_back(cost.block);
     }
     void memoryLoad(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, size_t address, size_t size) override {
         unsigned space = memory->getAddressSpace();  // constants are in global memory too
@@ -141,6 +145,8 @@ class Counter final : public oclgrind::Plugin {
     struct Cost {
         Class of = integer;
         double count = 0;
+        bool begins = false;  // a block
+        unsigned block = 0;
     };
 
     static Cost costOfCall(const llvm::CallInst& call) {
@@ -220,8 +226,43 @@ class Counter final : public oclgrind::Plugin {
     }
     Cost costOf(const llvm::Instruction* i) {
         const auto [found, fresh] = costs_.try_emplace(i);
-        if (fresh) found->second = computeCost(i);
+        if (fresh) {
+            found->second = computeCost(i);
+            found->second.begins = i == &i->getParent()->front();
+            if (found->second.begins) found->second.block = blockOf(i->getParent());
+        }
         return found->second;
+    }
+
+    // Blocks are numbered in the order of their function, and their operations summed.
+    unsigned blockOf(const llvm::BasicBlock* block) {
+        const auto known = blocks_.find(block);
+        if (known != blocks_.end()) return known->second;
+        for (const llvm::BasicBlock& each : *block->getParent()) {
+            blocks_[&each] = static_cast<unsigned>(blockOperations_.size());
+            double sum = 0;
+            for (const llvm::Instruction& i : each) {
+                sum += computeCost(&i).count;
+                if (llvm::isa<llvm::LoadInst>(i) || llvm::isa<llvm::StoreInst>(i) || llvm::isa<llvm::AtomicRMWInst>(i)) sum += 1;
+            }
+            blockOperations_.push_back(sum);
+        }
+        return blocks_.at(block);
+    }
+    // The operations of threads that run in step: whatever of them is furthest behind goes on, with all that are at the same block, so that
+    // threads wait for each other at the end of a loop (Fung et al. 2007 compare such policies).
+    double inStep(size_t first, size_t end) {
+        at_.assign(end - first, 0);
+        double sum = 0;
+        for (;;) {
+            unsigned next = UINT_MAX;
+            for (size_t k = first; k < end; ++k)
+                if (at_[k - first] < threads_[k].blocks.size()) next = std::min(next, threads_[k].blocks[at_[k - first]]);
+            if (next == UINT_MAX) return sum;
+            sum += blockOperations_[next];
+            for (size_t k = first; k < end; ++k)
+                if (at_[k - first] < threads_[k].blocks.size() && threads_[k].blocks[at_[k - first]] == next) ++at_[k - first];
+        }
     }
 
     static size_t indexOf(const oclgrind::WorkItem* item) {
@@ -275,6 +316,9 @@ class Counter final : public oclgrind::Plugin {
     Thread longest_;
     double longestTime_ = 0;
     std::unordered_map<const llvm::Instruction*, Cost> costs_;
+    std::unordered_map<const llvm::BasicBlock*, unsigned> blocks_;
+    std::vector<double> blockOperations_;
+    std::vector<size_t> at_;  // of each thread's blocks
     std::unordered_set<size_t> touched_, read_, written_;
     // instruction -> warp -> occurrence -> sectors
     std::unordered_map<const llvm::Instruction*, std::vector<std::vector<std::vector<size_t>>>> merged_;

@@ -181,6 +181,11 @@ Table<BenchCase> benchCases() {
         {"density", "the density pass on every device: column of 31k particles", benchDensity},
         {"memory", "bytes per particle on every device: column of 128k particles", benchMemory},
         {"series", "the thesis's falling column on every device: 16,384 i particles, i = 1 to 8", benchSeries},
+        {"gpu",
+         "a minute on this GPU: whether it computes the same water as the cpu (exit status 1 if not), then 100,000 to 1,000,000 particles, "
+         "drawn, beside the prediction of docs/gpus.md",
+         benchGpu},
+        {"gpu_model", "the cost model of GPUs against this machine's devices; with --out, the page gpus.md", benchGpuModel},
         {"voxels", "voxelisation of a mesh of 70,000 triangles in every mode, and its signed distance field", benchVoxels},
         {"collide", "share of a step spent on collision with a mesh: 16,384 particles", benchCollide},
         {"chapter2", "the thesis's chapter 2: times of the parts of a frame, one device against CPU and GPU together; with --out, a page",

@@ -1,6 +1,8 @@
 // The cases of `rivulet bench`. A case measures a quantity several times and reports median, minimum and maximum.
 #pragma once
 
+#include <json/forwards.h>
+
 #include <functional>
 #include <map>
 #include <string>
@@ -23,6 +25,8 @@ struct BenchRow {
 
 struct BenchContext {
     int runs = 5;                                 // measured runs of each row
+    bool quick = false;                           // gpu: one device, the smallest sizes
+    Json::Value* json = nullptr;                  // of --json: a case may add values under its own name
     std::string out;                              // output folder of the pages of a case; "": no pages
     Log log;                                      // notices, for example of an absent backend
     std::function<void(const BenchRow&)> report;  // prints a row at once
@@ -38,6 +42,8 @@ Table<BenchCase> benchCases();
 Status benchVoxels(const BenchContext& context);
 Status benchCollide(const BenchContext& context);
 Status benchMethods(const BenchContext& context);
+Status benchGpu(const BenchContext& context);
+Status benchGpuModel(const BenchContext& context);
 Status benchFlow(const BenchContext& context);
 Status benchChapter2(const BenchContext& context);
 Status benchChapter4(const BenchContext& context);

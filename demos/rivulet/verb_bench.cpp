@@ -71,6 +71,8 @@ int benchVerb(const Arguments& arguments) {
     reader.option("--json", "FILE.json", "also write the results as JSON", jsonFile);
     reader.option("--markdown", "FILE.md", "also write the results as a Markdown page, like docs/performance.md", markdownFile);
     reader.option("--out", "DIR", "output folder of the pages that chapter2 and chapter4 write; without it they write none", out);
+    bool quick = false;
+    reader.flag("--quick", "gpu: one device and the smallest sizes only", quick);
     reader.option("--runs", "N", "measured runs of each case; default: 5", runs, 5, 1000);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
@@ -96,8 +98,11 @@ int benchVerb(const Arguments& arguments) {
     all["machine"] = machineName();
     all["rows"] = Json::Value(Json::arrayValue);
     fmt::print("{}\n{:<44} {:>10} {:>10} {:>10}\n", machineName(), "", "median", "min", "max");
+    Status done = ok();
     for (const BenchCase* benchCase : cases) {
         BenchContext context;
+        context.quick = quick;
+        context.json = &all;
         context.runs = runs.value_or(5);
         context.out = out;
         context.log = stderrLog();
@@ -105,7 +110,9 @@ int benchVerb(const Arguments& arguments) {
             print(row);
             all["rows"].append(jsonOf(benchCase->name, row));
         };
-        if (Status done = benchCase->run(context); !done) return report(done.error());
+        done = benchCase->run(context);
+        if (!done) all["error"] = done.error().message;
+        if (!done) break;                                                      // what is measured is written
         if (const Graceful pages; pages.interrupted()) return pages.status();  // while pages were written
     }
     const Graceful graceful;  // until here Ctrl-C exits at once: rows are printed, and there is nothing to close
@@ -113,7 +120,7 @@ int benchVerb(const Arguments& arguments) {
         if (Status written = writeFileAtomic(jsonFile, jsonText(all, 6)); !written) return report(written.error());
     if (!markdownFile.empty())
         if (Status written = writeFileAtomic(markdownFile, markdownOf(all)); !written) return report(written.error());
-    return graceful.status();
+    return done ? graceful.status() : report(done.error());
 }
 
 }  // namespace rivulet

@@ -41,6 +41,7 @@ typedef float4 real4;
 #define ATOMIC_OR(x, v) atomic_or(&(x), v)
 #define ATOMIC_EXCHANGE(x, v) atomic_xchg(&(x), v) /* on GPUs only */
 #define ATOMIC_READ(x) atomic_add(&(x), 0u)
+#define LOWEST_BIT(u) (31u - clz((u) & (0u - (u)))) /* the number of the lowest bit that is set; u is not 0 */
 #define PREFETCH(x) /* of memory that is read soon; for a CPU, whose few threads wait for it */
 #define FN static inline
 #define STRUCT(n)       \
@@ -79,6 +80,7 @@ typedef float4 real4;
 #define ATOMIC_OR(x, v) atomicOr(x, v)
 #define ATOMIC_EXCHANGE(x, v) atomicExchange(x, v)
 #define ATOMIC_READ(x) atomicAdd(x, 0u)
+#define LOWEST_BIT(u) uint(findLSB(u))
 #define PREFETCH(x)
 #define FN
 #define STRUCT(n) struct n

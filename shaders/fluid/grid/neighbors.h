@@ -64,27 +64,27 @@
 // On a periodic axis cells 1 .. n - 2 wrap around; if there are only two of them, the lower and the upper neighbour are the same cell.
 FN int wrapped_(int c, int n, float period) { return period > 0.0f ? (c < 1 ? n - 2 : c > n - 2 ? 1 : c) : c; }
 FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 3; }
-#define FOR_NEIGHBORS(i, home, j)                                                                         \
+#define ROWS_(home)                                                                                       \
     {                                                                                                     \
         HOME_CELL(home)                                                                                   \
         int nx_ = cellsAround_(PARAMS.cellsX, PARAMS.period.x);                                           \
         int ny_ = cellsAround_(PARAMS.cellsY, PARAMS.period.y);                                           \
         int nz_ = cellsAround_(PARAMS.cellsZ, PARAMS.period.z);                                           \
-        for (int k_ = 0; k_ < nx_ * ny_ * nz_ * SETS_; ++k_) {                                            \
-            int x_ = wrapped_(cx_ + k_ % nx_ - 1, PARAMS.cellsX, PARAMS.period.x);                        \
-            int y_ = wrapped_(cy_ + k_ / nx_ % ny_ - 1, PARAMS.cellsY, PARAMS.period.y);                  \
-            int z_ = wrapped_(cz_ + k_ / (nx_ * ny_) % nz_ - 1, PARAMS.cellsZ, PARAMS.period.z);          \
-            int cell_ = (z_ * PARAMS.cellsY + y_) * PARAMS.cellsX + x_ + SET_AT_(k_ / (nx_ * ny_ * nz_)); \
-            uint end_ = neighbors[cell_ + 1];                                                             \
-            for (uint j = neighbors[cell_]; j < end_; ++j) {
+        for (int row_ = 0; row_ < nx_ * ny_ * nz_ * SETS_; ++row_) {                                      \
+            int x_ = wrapped_(cx_ + row_ % nx_ - 1, PARAMS.cellsX, PARAMS.period.x);                      \
+            int y_ = wrapped_(cy_ + row_ / nx_ % ny_ - 1, PARAMS.cellsY, PARAMS.period.y);                \
+            int z_ = wrapped_(cz_ + row_ / (nx_ * ny_) % nz_ - 1, PARAMS.cellsZ, PARAMS.period.z);        \
+            int cell_ = (z_ * PARAMS.cellsY + y_) * PARAMS.cellsX + x_ + SET_AT_(row_ / (nx_ * ny_ * nz_)); \
+            uint begin_ = neighbors[cell_];                                                               \
+            uint end_ = neighbors[cell_ + 1];
 #else
-#define FOR_NEIGHBORS(i, home, j)                                                                                                  \
+#define ROWS_(home)                                                                                                                \
     {                                                                                                                              \
         HOME_CELL(home)                                                                                                            \
         for (int row_ = 0; row_ < 9 * SETS_; ++row_) {                                                                             \
             int cell_ = ((cz_ + row_ / 3 % 3 - 1) * PARAMS.cellsY + cy_ + row_ % 3 - 1) * PARAMS.cellsX + cx_ + SET_AT_(row_ / 9); \
-            uint end_ = neighbors[cell_ + 2];                                                                                      \
-            for (uint j = neighbors[cell_ - 1]; j < end_; ++j) {
+            uint begin_ = neighbors[cell_ - 1];                                                                                    \
+            uint end_ = neighbors[cell_ + 2];
 #endif
 #endif
 // The vector from b to a; with PERIODIC the shortest of its periodic images.
@@ -97,4 +97,37 @@ FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {
 #define APART(a, b) wrapApart((a) - (b), PARAMS.period.xyz, PARAMS.invPeriod.xyz)
 #else
 #define APART(a, b) ((a) - (b))
+#endif
+// FOR_SEEN of pair terms that are zero from the distance h on. `at`: the particle's position, `position`: the buffer of its neighbours'. A GPU
+// first finds which of up to 32 neighbours are within h, a sixth of those in the cells, and then computes the terms of these alone: all threads
+// of a warp go through the long part for a few neighbours, not for each that one of them has.
+#undef FOR_PAIRS
+#undef FOR_ALL_PAIRS
+#undef END_PAIRS
+#undef END_ALL_PAIRS
+#if defined(__cplusplus) || defined(LINKED_LIST)
+#define FOR_PAIRS(i, home, at, position, j) FOR_SEEN(i, home, j)
+#define FOR_ALL_PAIRS(i, home, at, position, j) FOR_ALL_SEEN(i, home, j)
+#define END_PAIRS END_NEIGHBORS
+#define END_ALL_PAIRS(i) END_ALL_SEEN(i)
+#else
+#define FOR_NEIGHBORS(i, home, j) \
+    ROWS_(home)                   \
+    for (uint j = begin_; j < end_; ++j) {
+#define FOR_PAIRS(i, home, at, position, j)                               \
+    ROWS_(home)                                                           \
+    for (uint first_ = begin_; first_ < end_; first_ += 32u) {            \
+        uint many_ = min(end_ - first_, 32u);                             \
+        uint bits_ = 0u;                                                  \
+        for (uint b_ = 0u; b_ < many_; ++b_) {                            \
+            real3 d_ = APART(at, LOAD3(position, first_ + b_));           \
+            bits_ |= (dot(d_, d_) < PARAMS.h * PARAMS.h ? 1u : 0u) << b_; \
+        }                                                                 \
+        for (; bits_ != 0u; bits_ &= bits_ - 1u) {                        \
+            uint j = first_ + LOWEST_BIT(bits_);
+#define FOR_ALL_PAIRS(i, home, at, position, j) FOR_PAIRS(i, home, at, position, j)
+#define END_PAIRS \
+    }             \
+    END_NEIGHBORS
+#define END_ALL_PAIRS(i) END_PAIRS
 #endif

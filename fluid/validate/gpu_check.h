@@ -1,0 +1,30 @@
+// Whether a device computes and draws the same water as the cpu: a subset of the parity tests for a user's machine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "engine/core/result.h"
+#include "fluid/sim/world/fluid_world.h"
+
+namespace rivulet {
+
+struct GpuFinding {
+    std::string device;     // "gl"
+    std::string what;       // "pbf: positions after 10 steps"
+    std::string unit;       // "spacings"
+    double difference = 0;  // the largest over all particles
+    double limit = 0;
+    bool passed() const { return difference <= limit; }  // NaN does not pass
+    std::string sentence() const;                        // "gl: pbf: positions after 10 steps differ from the cpu's by 3.1 spacings; ..."
+};
+
+// Steps small worlds, one for each method and one with all forces, on both. Error: a kernel does not compile, or memory is exhausted.
+Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu);
+
+// Draws water with the context that is current: the share of pixels that the water changes, against that of its particles projected on the
+// CPU. Error (failed): a shader does not compile, or out of GPU memory.
+Result<GpuFinding> checkPicture(FluidWorld& world);
+
+}  // namespace rivulet

@@ -1,0 +1,279 @@
+#include "fluid/validate/gpu_cost.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "engine/core/assert.h"
+#include "fluid/session/reference_data.h"
+
+namespace rivulet {
+
+namespace {
+
+// Issue slots of an operation of each kind on a GPU: a division or root is several instructions, a branch two, a read of the parameter
+// block is an operand. A load is issued in one; what it moves counts as cache and memory.
+constexpr std::array<double, kGpuOps> kSlots = {1, 8, 1, 2, 0, 1, 1, 1, 1, 1};
+constexpr std::array<const char*, kGpuOps> kColumns = {"arithmetic", "special", "integers", "branches", "uniforms",
+                                                       "loads",      "stores",  "atomics",  "shared",   "barriers"};
+constexpr double kLaunch = 5.0e-6;  // s: Zhang et al. 2020, "A study of single and multi-device synchronization methods in Nvidia GPUs"
+
+// What a kernel does in one dispatch, a thread, means.
+struct KernelWork {
+    std::string name;
+    std::string_view per = "step";  // step | iteration | frame
+    double calls = 0;               // in one of these
+    double threads = 0;             // a dispatch
+    std::array<double, kGpuOps> count{};
+    double step8 = 1, step32 = 1, step64 = 1;  // operations in step over the mean
+    double longest = 0, longestLoads = 0;      // operations and loads of the longest thread
+    double sectors = 0, bytes = 0;             // 32 bytes each, of a warp's accesses; of memory
+    double waves = 1;                          // share of a GPU's waves that registers allow
+    double inStep(int step) const { return step <= 1 ? 1 : step <= 8 ? step8 : step <= 32 ? step32 : step64; }
+};
+
+// The line a + b x through points, by least squares; of two or more.
+struct Line {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    void add(double px, double py) { ++n, x += px, y += py, xx += px * px, xy += px * py; }
+    double at(double px) const {
+        const double d = n * xx - x * x;
+        if (n < 2 || std::abs(d) < 1.0e-12 * n * xx) return n > 0 ? y / n : 0;
+        const double b = (n * xy - x * y) / d;
+        return (y - b * x) / n + b * px;
+    }
+};
+
+// The kernels of a step with `particles`. What a thread does depends on the share of particles at walls and surfaces, which is proportional
+// to the inverse edge of the water: counts at several sizes are extended along it.
+std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view method, double particles) {
+    const ReferenceRows table = rowsOf(gpuTables(), counts);
+    struct Samples {
+        std::map<std::string, Line, std::less<>> lines;
+        std::set<double> threads;
+        double longest = 0, longestLoads = 0, largest = 0;
+        double smallest = 1.0e30, fewest = 0;  // fewest: loads of a thread with the smallest number of particles
+        const std::vector<std::string_view>* last = nullptr;
+    };
+    const size_t ofMethod = table.column("method"), ofKernel = table.column("kernel"), ofParticles = table.column("particles"),
+                 ofThreads = table.column("threads"), ofLongest = table.column("longest"), ofLoads = table.column("longest_loads");
+    constexpr const char* kFitted[] = {"step8", "step32", "step64", "sectors", "read_bytes", "written_bytes"};
+    std::map<std::string, Samples, std::less<>> kernels;
+    for (const std::vector<std::string_view>& row : table.rows) {
+        if (row[ofMethod] != method) continue;
+        Samples& s = kernels[std::string(row[ofKernel])];
+        const double count = numberIn(row[ofParticles]), x = 1 / std::cbrt(count), threads = numberIn(row[ofThreads]);
+        const auto take = [&](const char* column) { s.lines[column].add(x, numberIn(row[table.column(column)])); };
+        for (const char* column : kColumns) take(column);
+        for (const char* column : kFitted) take(column);
+        s.lines["threads"].add(x, threads / count);
+        s.threads.insert(threads);
+        s.longest = std::max(s.longest, numberIn(row[ofLongest]));
+        s.longestLoads = std::max(s.longestLoads, numberIn(row[ofLoads]));
+        if (count >= s.largest) s.largest = count, s.last = &row;
+        if (count < s.smallest) s.smallest = count, s.fewest = numberIn(row[table.column("loads")]);
+    }
+    const double x = 1 / std::cbrt(std::max(particles, 1.0));
+    std::vector<KernelWork> all;
+    all.reserve(kernels.size());
+    for (const auto& [name, s] : kernels) {
+        // A fixed number of threads that share all particles (sums), or does something once: what each of them does grows with their
+        // number.
+        const bool fixed = s.threads.size() == 1 && s.largest > s.smallest;
+        const double grows = fixed && numberIn((*s.last)[table.column("loads")]) > 1.2 * s.fewest ? particles / s.largest : 1;
+        const auto at = [&, &s = s](const char* column) {
+            return fixed ? grows * numberIn((*s.last)[table.column(column)]) : std::max(s.lines.find(column)->second.at(x), 0.0);
+        };
+        KernelWork w;
+        w.name = name;
+        w.per = (*s.last)[table.column("per")];
+        w.calls = numberIn((*s.last)[table.column("calls")]);
+        w.threads = fixed ? *s.threads.begin() : at("threads") * particles;
+        double operations = 0;
+        for (size_t k = 0; k < kGpuOps; ++k) operations += w.count[k] = at(kColumns[k]);
+        if (operations > 0) {
+            w.step8 = std::max(at("step8") / operations, 1.0);
+            w.step32 = std::max(at("step32") / operations, 1.0);
+            w.step64 = std::max(at("step64") / operations, 1.0);
+        }
+        w.longest = grows * s.longest;
+        w.longestLoads = grows * s.longestLoads;
+        w.sectors = at("sectors");
+        w.bytes = at("read_bytes") + at("written_bytes");
+        w.waves = std::clamp(numberIn((*s.last)[table.column("waves")]), 0.0, 1.0);
+        if (w.waves == 0) w.waves = 1;
+        all.push_back(std::move(w));
+    }
+    return all;
+}
+
+// One dispatch on one device.
+struct DispatchCost {
+    double seconds = 0, operations = 0, bytes = 0;
+    const char* bound = "";
+};
+DispatchCost dispatchOf(const GpuSpec& gpu, const KernelWork& w) {
+    double perThread = 0, operations = 0, slots = 0;
+    for (size_t k = 0; k < kGpuOps; ++k) {
+        perThread += w.count[k] * gpu.seconds[k];
+        operations += w.count[k];
+        slots += w.count[k] * kSlots[k];
+    }
+    const double inStep = w.inStep(gpu.step);
+    const double loads = w.count[static_cast<size_t>(GpuOp::load)] + w.count[static_cast<size_t>(GpuOp::atomic)];
+    const double wait = (slots * gpu.operationLatency + loads * gpu.loadLatency) * inStep;
+    const double longest = operations > 0 ? w.longest * slots / operations : 0;  // slots: of the mix of all threads
+    const struct {
+        double seconds;
+        const char* bound;
+    } limits[] = {
+        {w.threads * perThread * inStep, "operations"},
+        {gpu.cache > 0 ? w.threads * w.sectors * 32 / gpu.cache : 0, "cache"},
+        {w.threads * w.bytes / gpu.bandwidth, "memory"},
+        {gpu.resident > 0 ? w.threads * wait / (gpu.resident * w.waves) : 0, "waits"},
+        {longest * gpu.operationLatency + w.longestLoads * gpu.loadLatency, "longest thread"},
+    };
+    DispatchCost cost{.seconds = 0, .operations = w.threads * operations, .bytes = w.threads * w.bytes, .bound = "launches"};
+    for (const auto& limit : limits)
+        if (limit.seconds > cost.seconds) cost.seconds = limit.seconds, cost.bound = limit.bound;
+    if (cost.seconds < gpu.launch) cost.bound = "launches";
+    cost.seconds += gpu.launch;
+    return cost;
+}
+
+FrameCost sorted(std::vector<PassCost> passes) {
+    std::sort(passes.begin(), passes.end(), [](const PassCost& a, const PassCost& b) { return a.ms > b.ms; });
+    return {std::move(passes)};
+}
+
+std::string lowerOf(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return lower;
+}
+
+}  // namespace
+
+double FrameCost::ms() const {
+    double sum = 0;
+    for (const PassCost& p : passes) sum += p.ms;
+    return sum;
+}
+
+std::vector<GpuSpec> publishedGpus() {
+    const ReferenceRows table = rowsOf(gpuTables(), "gpus");
+    std::vector<GpuSpec> all;
+    all.reserve(table.rows.size());
+    for (const std::vector<std::string_view>& row : table.rows) {
+        const auto number = [&](const char* column) { return numberIn(row[table.column(column)]); };
+        GpuSpec g;
+        g.name = row[table.column("name")];
+        const double clock = number("clock_mhz") * 1.0e6, units = number("units"), lanes = units * number("lanes") * clock;
+        g.step = static_cast<int>(number("step"));
+        for (size_t k = 0; k < kGpuOps; ++k) g.seconds[k] = kSlots[k] / lanes;
+        g.bandwidth = number("gb_s") * 1.0e9;
+        g.cache = number("cache_bytes_clock") * units * clock;
+        g.launch = kLaunch;
+        g.operationLatency = number("operation_cycles") / clock;
+        g.loadLatency = number("load_cycles") / clock;
+        g.resident = number("threads") * units;
+        g.pixels = number("rops") * clock;
+        g.texels = number("tmus") * clock;
+        all.push_back(std::move(g));
+    }
+    return all;
+}
+
+GpuSpec measuredGpu(const std::string& name, const DeviceRates& rates, int step) {
+    GpuSpec g;
+    g.name = name;
+    g.step = step;
+    const double arithmetic = 1 / rates.arithmetic, integer = 1 / rates.integer, load = 1 / rates.loads;
+    // A round of a loop is one addition of integers, one comparison and one branch.
+    const double branch = std::max(1 / rates.rounds - 2 * integer, integer);
+    g.seconds = {arithmetic, 1 / rates.special, integer, branch, integer, load, load, load, load, load};
+    g.bandwidth = rates.bandwidth;
+    g.launch = rates.dispatchMs / 1000;
+    return g;
+}
+
+NearestGpu nearestGpu(std::string_view name, double bandwidth) {
+    const std::vector<GpuSpec> all = publishedGpus();
+    const std::string lower = lowerOf(name);
+    const GpuSpec* found = nullptr;
+    for (const GpuSpec& g : all)  // the longest name that is part of it
+        if (lower.find(lowerOf(g.name)) != std::string::npos && (found == nullptr || g.name.size() > found->name.size())) found = &g;
+    if (found != nullptr) return {*found, true};
+    for (const GpuSpec& g : all)
+        if (found == nullptr || std::abs(std::log(g.bandwidth / bandwidth)) < std::abs(std::log(found->bandwidth / bandwidth))) found = &g;
+    ASSERT(found != nullptr, "gpus.csv has rows");
+    return {*found, false};
+}
+
+FrameWork measuredWork(std::string_view method, double particles) {
+    const ReferenceRows table = rowsOf(gpuTables(), "frames");
+    FrameWork work;
+    double nearest = 1.0e30, at = particles;
+    for (const std::vector<std::string_view>& row : table.rows) {
+        if (row[table.column("method")] != method) continue;
+        const double count = numberIn(row[table.column("particles")]), far = std::abs(std::log(count / particles));
+        if (far >= nearest) continue;
+        nearest = far;
+        at = count;
+        work = {numberIn(row[table.column("substeps")]), numberIn(row[table.column("iterations")])};
+    }
+    // Steps are as long as particles are wide.
+    work.substeps = std::max(work.substeps * std::cbrt(particles / at), 1.0);
+    return work;
+}
+
+FrameCost predictSteps(const GpuSpec& gpu, std::string_view method, double particles, const FrameWork& work, std::string_view counts) {
+    std::vector<PassCost> passes;
+    for (const KernelWork& w : kernelsOf(counts, method, particles)) {
+        const double dispatches = w.calls * (w.per == "frame" ? 1 : work.substeps) * (w.per == "iteration" ? work.iterations : 1);
+        const DispatchCost one = dispatchOf(gpu, w);
+        passes.push_back(
+            {w.name, 1000 * one.seconds * dispatches, dispatches, one.bound, one.operations * dispatches, one.bytes * dispatches});
+    }
+    return sorted(std::move(passes));
+}
+
+FrameCost predictPicture(const GpuSpec& gpu, double particles) {
+    const ReferenceRows table = rowsOf(gpuTables(), "passes");
+    double at = 0;
+    for (const std::vector<std::string_view>& row : table.rows) {
+        const double count = numberIn(row[table.column("particles")]);
+        if (at == 0 || std::abs(std::log(count / particles)) < std::abs(std::log(at / particles))) at = count;
+    }
+    std::vector<PassCost> passes;
+    for (const std::vector<std::string_view>& row : table.rows) {
+        const auto number = [&](const char* column) { return numberIn(row[table.column(column)]); };
+        if (number("particles") != at) continue;
+        const double vertices = number("vertices") * particles / at, fragments = number("fragments");
+        const double operations = fragments * number("operations") + vertices * number("vertex_operations");
+        const double reads = fragments * number("reads") + vertices * number("vertex_reads");
+        const double load = gpu.seconds[static_cast<size_t>(GpuOp::load)], arithmetic = gpu.seconds[static_cast<size_t>(GpuOp::arithmetic)];
+        const double bytes = number("read_bytes") + number("written_bytes");
+        const struct {
+            double seconds;
+            const char* bound;
+        } limits[] = {
+            {operations * arithmetic + (gpu.texels > 0 ? 0 : reads * load), "operations"},
+            {gpu.texels > 0 ? reads / gpu.texels : 0, "cache"},
+            {bytes / gpu.bandwidth, "memory"},
+            {gpu.pixels > 0 ? fragments / gpu.pixels : 0, "pixels"},
+        };
+        PassCost pass{std::string(row[table.column("pass")]), 0, number("passes"), "launches", operations, bytes};
+        double seconds = 0;
+        for (const auto& limit : limits)
+            if (limit.seconds > seconds) seconds = limit.seconds, pass.bound = limit.bound;
+        if (seconds < gpu.launch * pass.dispatches) pass.bound = "launches";
+        pass.ms = 1000 * (seconds + gpu.launch * pass.dispatches);
+        passes.push_back(std::move(pass));
+    }
+    return sorted(std::move(passes));
+}
+
+}  // namespace rivulet

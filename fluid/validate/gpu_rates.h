@@ -1,0 +1,28 @@
+// How fast a device is, measured by tiny kernels (shaders/bench): bandwidth, operations by kind, and the cost of a dispatch.
+#pragma once
+
+#include "engine/compute/device.h"
+#include "engine/core/result.h"
+
+namespace rivulet {
+
+// Of the whole device, all of it busy.
+struct DeviceRates {
+    double bandwidth = 0;   // bytes/s, read and written together
+    double arithmetic = 0;  // operations/s: x * a + b is two
+    double integer = 0;     // operations/s
+    double special = 0;     // square roots/s
+    double loads = 0;       // vec4/s, from a few elements that every cache holds
+    double rounds = 0;      // rounds of a loop/s: its count, comparison and branch
+    double dispatchMs = 0;  // ms of a dispatch of one work group
+    double seconds = 0;     // that the measurement took
+};
+
+// The time of a device, s: on a GPU of the wall. A device that is software: processor time of this process over the number of threads.
+double deviceSeconds(const Device& device);
+
+// Takes less than a second on a GPU, a few seconds on a device that is software. gl: its context must be current. Error: a kernel does not
+// compile, or memory is exhausted (failed); the device is cpu, which has other kernels (badInput).
+Result<DeviceRates> measureRates(Device& device);
+
+}  // namespace rivulet

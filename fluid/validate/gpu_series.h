@@ -1,0 +1,46 @@
+// Steps and pictures of dam_break on a device, measured, beside what the cost model says of them.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "fluid/session/scene_renderer.h"
+#include "fluid/validate/gpu_cost.h"
+
+namespace rivulet {
+
+constexpr int kSeriesWidth = 1920, kSeriesHeight = 1080;  // pixels of a picture
+
+// A device, and the model of it.
+struct ExaminedGpu {
+    Device* device = nullptr;
+    std::string name;
+    DeviceRates rates = {};
+    GpuSpec model = {};
+    std::string from = {};  // "RTX 3060, by its name"; a device that is software: "its own measured rates"
+};
+// `name`: of the renderer or the OpenCL device. Error: as measureRates().
+Result<ExaminedGpu> examineGpu(Device& device, const std::string& name);
+
+// All times are ms: on a GPU of the wall, with a wait at the end. A device that is software: processor time over the number of threads,
+// which other programs on the machine hardly change.
+struct SeriesRow {
+    std::string device, method;  // "gl", "pbf"
+    int particles = 0;
+    double stepMs = 0, predictedStepMs = 0;                                   // of a substep
+    double frameMs = 0, predictedFrameMs = 0;                                 // of 1/60 s, with the substeps and iterations of frames.csv
+    double iterations = 0;                                                    // of the pressure solver, in a substep
+    double drawMs = 0, predictedDrawMs = 0;                                   // of a picture; 0: not drawn
+    std::map<std::string, double> passes = {}, predictedPasses = {};          // of a substep: the least of all
+    std::map<std::string, double> drawPasses = {}, predictedDrawPasses = {};  // of a picture
+};
+
+int seriesParticles(int side);  // a column `side` particles wide and deep, twice as high
+FluidParams seriesWater(const SceneFile& damBreak, const char* method, int side);
+
+// Steps the column for `seconds` on the wall, one substep at least, and draws it with `renderer`, if it is not null. Error: out of memory
+// (Error::memory), or the device failed.
+Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBreak, const char* method, int side, double seconds,
+                                SceneRenderer* renderer);
+
+}  // namespace rivulet

@@ -1,0 +1,203 @@
+#!/usr/bin/env python3
+"""Writes the tables of the GPU cost model (assets/gpus) from what is counted here: no figure in them depends on this machine's speed.
+
+    python3 tests/gpu_cost/count.py kernels [--build build/release]   what each kernel does: OpenCL kernels in Oclgrind, with counter.cpp; 20 minutes
+    python3 tests/gpu_cost/count.py frames  [--build build/release]   substeps and iterations of a frame, on the cpu; 10 minutes
+
+    python3 tests/gpu_cost/count.py passes  [--build build/release]   what each drawing pass does: gpu_cost_passes, which it builds; minutes
+
+Needs the packages oclgrind, liboclgrind-dev and llvm-14-dev (kernels), glslang-tools and spirv-tools (passes). The scene is dam_break with default settings but for method and spacing.
+"""
+import argparse
+import csv
+import io
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TABLES = ROOT / "assets/gpus"
+METHODS = ("wcsph", "pbf", "dfsph")
+SPACINGS = (0.03125, 0.0223, 0.0179)  # 1,024, 2,662 and 4,563 particles
+COUNTED_AT = 0.2                        # s: the column has spread over half of the tank
+FRAMES = 24
+ITERATIONS = 2                          # of a solver while it is counted
+ITERATED = {"fluid/methods/pbf_lambda", "fluid/methods/pbf_shift", "fluid/solids/follow_walls", "fluid/methods/dfsph_rate", "fluid/methods/dfsph_push",
+            "fluid/methods/residual", "fluid/methods/solver_progress"}
+ONCE = {"fluid/surface/ellipsoids", "fluid/world/stats", "fluid/world/set_ratio"}  # a frame
+
+
+def run(words, **environment):
+    done = subprocess.run([str(w) for w in words], env={**os.environ, **{k: str(v) for k, v in environment.items()}}, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{' '.join(map(str, words))}\nended with {done.returncode}:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def plugin(folder):
+    """counter.cpp as a library; Oclgrind is built without type information, and against LLVM 14."""
+    to = folder / "counter.so"
+    flags = run(["llvm-config-14", "--cppflags"]).split()
+    run(["g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-fno-rtti", "-I/usr/include/oclgrind", *flags, ROOT / "tests/gpu_cost/counter.cpp", "-o", to])
+    return to
+
+
+def settings(method, spacing):
+    return ["--set", f"fluid.method={method}", "--set", f"fluid.spacing={spacing}", "--no-render"]
+
+
+def paths():
+    """Name of a kernel -> its path below shaders: the names of those in fluid/ are unique."""
+    return {p.stem: p.relative_to(ROOT / "shaders").with_suffix("").as_posix() for p in (ROOT / "shaders/fluid").rglob("*.kernel")}
+
+
+def occupancy():
+    """Path of a kernel -> the share of waves that its registers allow on NAVI21, where tests/gpus has measured it; the least of its variants."""
+    table = ROOT / "tests/gpus/table.csv"
+    shares = {}
+    if not table.exists():
+        return shares
+    lines = [line for line in table.read_text().splitlines() if not line.startswith("#")]
+    for row in csv.DictReader(lines):
+        if "navi21" not in row["device"].lower() or not row["waves"] or not row["most_waves"]:
+            continue
+        share = float(row["waves"]) / float(row["most_waves"])
+        shares[row["kernel"]] = min(share, shares.get(row["kernel"], 1.0))
+    return shares
+
+
+def count_kernels(program, to, spacings, methods):
+    rows, names, waves = [], paths(), occupancy()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        counter = plugin(folder)
+        for method in methods:
+            for spacing in spacings:
+                state, counts, stats = folder / "water.rstate", folder / "counts.csv", folder / "stats.json"
+                run([program, "run", "dam_break", *settings(method, spacing), "--backend", "cpu", "--seconds", COUNTED_AT, "--save", state, "--stats", stats])
+                particles = json.loads(stats.read_text())["particles"]
+                # One substep: with slow sound a long one is allowed. What is done in it does not depend on the sound.
+                run(["oclgrind", "--num-threads", 1, "--plugins", counter, program, "run", "dam_break", *settings(method, spacing), "--backend", "cl",
+                     "--resume", state, "--frames", 1, "--stats", stats, "--set", "fluid.longestFrame=0.001", "--set", "fluid.soundSpeed=1",
+                     "--set", f"fluid.dfsph.maxIterations={ITERATIONS}", "--set", f"fluid.pbf.iterations={ITERATIONS}",
+                     "--set", "fluid.dfsph.tolerance=1e-6"], RIVULET_COUNTS=counts, XDG_CACHE_HOME=folder)
+                substeps = json.loads(stats.read_text())["substeps"]
+                for row in csv.DictReader(io.StringIO(counts.read_text())):
+                    calls, per = float(row.pop("calls")) / substeps, "step"
+                    path = names[row.pop("kernel")]
+                    if path in ITERATED:
+                        calls, per = 1, "iteration"
+                    elif path in ONCE:
+                        calls, per = 1, "frame"
+                    elif method == "pbf" and path == "fluid/solids/near_walls":
+                        calls -= 1 / substeps  # for the figures of the frame
+                    rows.append({"method": method, "particles": particles, "kernel": path, "per": per, "calls": f"{calls:g}",
+                                 "waves": f"{waves.get(path, 1):.3g}", **row})
+                print(f"{method}, {particles} particles: {substeps} substeps", flush=True)
+    write(to / "kernels.csv", "What the kernels of dam_break do in a dispatch, a thread, means: counted in Oclgrind by tests/gpu_cost/count.py kernels.\n"
+          "# per: calls are in a step, an iteration or a frame. waves: share of a GPU's waves that registers allow. step8, step32, step64: operations\n"
+          "# if all threads of a group take as long as its longest. longest: operations and loads of the longest thread of a dispatch. sectors:\n"
+          "# 32 bytes, of the accesses of 32 threads together, over 32. Bytes: read and written, each sector once a dispatch; group_bytes: once a\n"
+          "# work group.", rows)
+
+
+def count_frames(program, to, *_):
+    rows = []
+    with tempfile.TemporaryDirectory() as temporary:
+        stats = pathlib.Path(temporary) / "stats.json"
+        # Steps are as long as particles are wide: the model scales the nearest row. The first frames of larger worlds alone are not like the others.
+        for spacing, methods in ((0.015625, METHODS), (0.00685, ("pbf", "dfsph"))):
+            for method in methods:
+                run([program, "run", "dam_break", *settings(method, spacing), "--backend", "cpu", "--frames", FRAMES, "--stats", stats])
+                s = json.loads(stats.read_text())
+                rows.append({"method": method, "particles": s["particles"], "frames": FRAMES, "substeps": f"{s['substeps'] / s['frames']:.4g}",
+                             "iterations": f"{s['iterations']:.4g}"})
+                print(rows[-1], flush=True)
+    write(to / "frames.csv", "Substeps in a frame of 1/60 s, and iterations of the pressure solver in a substep: dam_break on the cpu, its first frames, by\n"
+          "# tests/gpu_cost/count.py frames.", rows)
+
+
+ARITHMETIC = ("FAdd", "FSub", "FMul", "FNegate", "FOrd", "FUnord", "IAdd", "ISub", "IMul", "INotEqual", "IEqual", "SLess", "SGreater", "ULess", "UGreater",
+              "Select", "Convert", "Bitwise", "Shift", "Not", "LogicalAnd", "LogicalOr", "BitField")
+
+
+def operations_of(text, stage, folder):
+    """Operations and reads of textures in a shader's text, once each: SPIR-V with everything inlined. A root or division counts 8."""
+    source, code = folder / f"one.{stage}", folder / "one.spv"
+    source.write_text(text)
+    run(["glslangValidator", "-G", "--auto-map-locations", "--auto-map-bindings", "-S", stage, source, "-o", code])
+    run(["spirv-opt", "--skip-validation", "-O", code, "-o", code])
+    widths, operations, reads = {}, 0, 0
+    for line in run(["spirv-dis", "--raw-id", "--no-header", code]).splitlines():
+        words = line.split()
+        if len(words) < 3 or words[1] != "=":
+            continue
+        name = words[2][2:]
+        if name == "TypeVector":
+            widths[words[0]] = int(words[4])
+        width = widths.get(words[3], 1) if len(words) > 3 else 1
+        if name.startswith(("ImageSample", "ImageFetch")):
+            reads += 1
+        elif name == "Dot":
+            operations += 3
+        elif name in ("FDiv", "FMod", "FRem", "UDiv", "SDiv", "UMod", "SMod"):
+            operations += 8 * width
+        elif name == "ExtInst":
+            slow = words[5] in ("Sqrt", "InverseSqrt", "Exp", "Exp2", "Log", "Log2", "Pow", "Sin", "Cos", "Tan", "Acos", "Asin", "Atan", "Atan2", "Length", "Normalize")
+            operations += (8 if slow else 1) * width
+        elif name in ("VectorTimesScalar", "VectorTimesMatrix", "MatrixTimesVector"):
+            operations += width * (1 if name == "VectorTimesScalar" else 4)
+        elif name.startswith(ARITHMETIC):
+            operations += width
+    return operations, reads
+
+
+def count_passes(program, to, *_):
+    rows = []
+    build = program.parents[1]
+    run(["cmake", "--build", build, "--target", "gpu_cost_passes"])
+    for spacing, frames in ((0.015625, 18), (0.00684, 12), (0.00316, 2)):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            particles = int(run([next(build.rglob("gpu_cost_passes")), spacing, frames, folder]).split()[0])
+            for row in csv.DictReader(io.StringIO((folder / "passes.csv").read_text())):
+                invocations = {"vert": float(row["vertices"]), "frag": float(row["fragments"])}
+                reads = {"vert": float(row.pop("vertex_reads")), "frag": float(row.pop("reads"))}
+                out = {"particles": particles, **row}
+                for stage, operations_column, reads_column in (("frag", "operations", "reads"), ("vert", "vertex_operations", "vertex_reads")):
+                    shader = folder / f"{row['pass']}.{stage}"
+                    each, inside = operations_of(shader.read_text(), stage, folder) if shader.exists() else (0, 0)
+                    counted = reads[stage] / invocations[stage] if invocations[stage] > 0 else 0
+                    out[reads_column] = f"{counted:.4g}"
+                    out[operations_column] = f"{each * max(1.0, counted / inside if inside else 1.0):.4g}"
+                rows.append(out)
+            print(f"{particles} particles", flush=True)
+    write(to / "passes.csv", "What the passes of a picture of dam_break do, 1920x1080, fine, with pbf: counted by tests/gpu_cost/count.py passes. Bytes: whole textures\n"
+          "# and buffers, once for each pass that declares them. operations and reads (of textures): of a fragment; of a vertex.", rows)
+
+
+def write(path, doc, rows):
+    path.parent.mkdir(exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"# {doc}\n")
+        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", choices=("kernels", "frames", "passes"))
+    parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
+    parser.add_argument("--to", default=TABLES, type=pathlib.Path, help="folder of the table")
+    parser.add_argument("--spacings", default=SPACINGS, type=float, nargs="+", help="of kernels, m: at least two for a prediction")
+    parser.add_argument("--methods", default=METHODS, nargs="+", help="of kernels")
+    arguments = parser.parse_args()
+    program = arguments.build.resolve() / "bin/rivulet"
+    {"kernels": count_kernels, "frames": count_frames, "passes": count_passes}[arguments.table](program, arguments.to, arguments.spacings, arguments.methods)
+
+
+if __name__ == "__main__":
+    main()

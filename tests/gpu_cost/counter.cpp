@@ -1,0 +1,341 @@
+// A plugin of Oclgrind (Price and McIntosh-Smith 2015) that counts what OpenCL kernels execute: operations by class, bytes, the memory that
+// a work group and a dispatch touch, and how unevenly the threads of a warp are loaded. Appends a row for each kernel to the file
+// RIVULET_COUNTS when the program ends. All figures are for a thread, means over all dispatches of the kernel, unless they say otherwise.
+//
+// Arithmetic on a vector counts once for each component, and a * b + c, where the compiler may contract it, once. Operations that cost a
+// GPU nothing are not counted: moves between registers, which Oclgrind sees as loads and stores of private memory, phi nodes, casts of
+// pointers, and parts of vectors taken out or put in.
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/DerivedTypes.h>
+#include <llvm/IR/Instructions.h>
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "oclgrind/Context.h"
+#include "oclgrind/Kernel.h"
+#include "oclgrind/KernelInvocation.h"
+#include "oclgrind/Memory.h"
+#include "oclgrind/Plugin.h"
+#include "oclgrind/WorkGroup.h"
+#include "oclgrind/WorkItem.h"
+
+namespace {
+
+enum Class { arithmetic, special, integer, branch, uniform, load, store, atomic, shared, barrier, kClasses };
+constexpr const char* kNames[kClasses] = {"arithmetic", "special", "integers", "branches", "uniforms",
+                                          "loads",      "stores",  "atomics",  "shared",   "barriers"};
+constexpr size_t kSector = 32;                          // bytes: what a GPU's caches exchange with memory
+constexpr std::array<size_t, 3> kWidths = {8, 32, 64};  // threads that a device runs in step
+constexpr unsigned kGlobal = 1, kConstant = 2, kLocal = 3;
+
+struct Thread {
+    std::array<double, kClasses> count{};
+    std::vector<unsigned> blocks = {};  // that it went through, by their order in the kernel
+    double operations() const {
+        double sum = 0;
+        for (const double c : count) sum += c;
+        return sum;
+    }
+};
+
+// Sums over all dispatches of one kernel.
+struct Sums {
+    double calls = 0, threads = 0, loadBytes = 0, storeBytes = 0, sectors = 0, groupBytes = 0, readBytes = 0, writtenBytes = 0;
+    std::array<double, kClasses> count{};
+    std::array<double, kWidths.size()> inStep{};  // operations if every thread of a warp takes as long as its longest
+    double longest = 0, longestLoads = 0;         // of the longest thread of each dispatch
+};
+
+double widthOf(const llvm::Type* type) {
+    if (const auto* vector = llvm::dyn_cast<llvm::FixedVectorType>(type))
+        return vector->getNumElements() == 4 ? 4 : vector->getNumElements();
+    return 1;
+}
+
+class Counter final : public oclgrind::Plugin {
+  public:
+    explicit Counter(const oclgrind::Context* context) : Plugin(context) {}
+    ~Counter() override { write(); }
+    bool isThreadSafe() const override { return false; }
+
+    void kernelBegin(const oclgrind::KernelInvocation* invocation) override {
+        sums_ = &all_[invocation->getKernel()->getName()];
+        ++sums_->calls;
+        read_.clear();
+        written_.clear();
+        longest_ = {};
+        longestTime_ = 0;
+    }
+    void kernelEnd(const oclgrind::KernelInvocation*) override {
+        sums_->readBytes += static_cast<double>(kSector * read_.size());
+        sums_->writtenBytes += static_cast<double>(kSector * written_.size());
+        sums_->longest += longest_.operations();
+        sums_->longestLoads += longest_.count[load] + longest_.count[atomic];
+    }
+    void workGroupBegin(const oclgrind::WorkGroup* group) override {
+        const oclgrind::Size3 size = group->getGroupSize();
+        threads_.assign(size.x * size.y * size.z, {});
+        touched_.clear();
+        merged_.clear();
+        occurrence_.clear();
+    }
+    void workGroupComplete(const oclgrind::WorkGroup*) override {
+        sums_->threads += static_cast<double>(threads_.size());
+        sums_->groupBytes += static_cast<double>(kSector * touched_.size());
+        for (const Thread& t : threads_) {
+            for (size_t k = 0; k < kClasses; ++k) sums_->count[k] += t.count[k];
+            if (t.operations() > longestTime_) longestTime_ = t.operations(), longest_ = t;
+        }
+        for (size_t w = 0; w < kWidths.size(); ++w)
+            for (size_t first = 0; first < threads_.size(); first += kWidths[w]) {
+                const size_t end = std::min(first + kWidths[w], threads_.size());
+                double most = inStep(first, end);
+                for (size_t k = first; k < end; ++k) most = std::max(most, threads_[k].operations());
+                sums_->inStep[w] += most * static_cast<double>(end - first);
+            }
+        for (const auto& [at, warps] : merged_)
+            for (const auto& occurrences : warps)
+                for (const auto& sectors : occurrences) sums_->sectors += static_cast<double>(sectors.size());
+    }
+    void instructionExecuted(const oclgrind::WorkItem* item, const llvm::Instruction* instruction, const oclgrind::TypedValue&) override {
+        const Cost cost = costOf(instruction);
+        Thread& thread = threadOf(item);
+        if (cost.count > 0) thread.count[cost.of] += cost.count;
+        if (cost.begins) thread.blocks.push_back(cost.block);
+    }
+    void memoryLoad(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, size_t address, size_t size) override {
+        unsigned space = memory->getAddressSpace();  // constants are in global memory too
+        if (const auto* by = llvm::dyn_cast<llvm::LoadInst>(item->getCurrentInstruction())) space = by->getPointerAddressSpace();
+        if (space == kLocal) ++threadOf(item).count[shared];
+        if (space == kConstant) ++threadOf(item).count[uniform];
+        if (space != kGlobal) return;
+        ++threadOf(item).count[load];
+        sums_->loadBytes += static_cast<double>(size);
+        touch(item, address, size, read_);
+    }
+    void memoryStore(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, size_t address, size_t size, const uint8_t*) override {
+        const unsigned space = memory->getAddressSpace();
+        if (space == kLocal) ++threadOf(item).count[shared];
+        if (space != kGlobal) return;
+        ++threadOf(item).count[store];
+        sums_->storeBytes += static_cast<double>(size);
+        touch(item, address, size, written_);
+    }
+    void memoryAtomicLoad(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, oclgrind::AtomicOp, size_t address,
+                          size_t size) override {
+        if (memory->getAddressSpace() != kGlobal) return;
+        ++threadOf(item).count[atomic];
+        touch(item, address, size, read_);
+    }
+    void memoryAtomicStore(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, oclgrind::AtomicOp, size_t address,
+                           size_t size) override {
+        if (memory->getAddressSpace() == kGlobal) touch(item, address, size, written_);
+    }
+
+  private:
+    struct Cost {
+        Class of = integer;
+        double count = 0;
+        bool begins = false;  // a block
+        unsigned block = 0;
+    };
+
+    static Cost costOfCall(const llvm::CallInst& call) {
+        const llvm::Function* f = call.getCalledFunction();
+        if (f == nullptr || f->isIntrinsic()) {
+            if (f == nullptr || f->getName().startswith("llvm.dbg") || f->getName().startswith("llvm.lifetime")) return {};
+            return {call.getType()->isFPOrFPVectorTy() ? arithmetic : integer, widthOf(call.getType())};
+        }
+        std::string name = f->getName().str();  // _Z3dotDv3_fS_: length and name
+        if (name.starts_with("_Z")) {
+            char* end = nullptr;
+            const size_t length = std::strtoul(name.c_str() + 2, &end, 10);
+            name = std::string(end, length);
+        } else if (!f->isDeclaration()) {
+            return {};  // a function of the kernel's own: its body is counted
+        }
+        const double width = widthOf(call.arg_size() > 0 ? call.getArgOperand(0)->getType() : call.getType());
+        if (!f->isDeclaration()) return {};
+        if (name == "dot") return {arithmetic, width};
+        if (name == "length" || name == "distance" || name == "normalize") return {arithmetic, 2 * width + 8};
+        if (name == "cross") return {arithmetic, 6};
+        if (name == "mix" || name == "clamp") return {arithmetic, 2 * width};
+        for (const char* slow : {"sqrt", "rsqrt", "exp", "log", "pow", "sin", "cos", "tan", "acos", "asin", "atan", "atan2", "native_"})
+            if (name.starts_with(slow)) return {special, width};
+        if (name == "barrier") return {barrier, 1};
+        if (name.starts_with("get_") || name.starts_with("atom")) return {};
+        return {call.getType()->isFPOrFPVectorTy() ? arithmetic : integer, width};
+    }
+
+    static Cost computeCost(const llvm::Instruction* i) {
+        const double width = widthOf(i->getType());
+        switch (i->getOpcode()) {
+            case llvm::Instruction::FAdd:
+            case llvm::Instruction::FSub:
+            case llvm::Instruction::FMul:
+            case llvm::Instruction::FNeg:
+            case llvm::Instruction::FCmp:
+            case llvm::Instruction::FPToSI:
+            case llvm::Instruction::FPToUI:
+            case llvm::Instruction::SIToFP:
+            case llvm::Instruction::UIToFP:
+            case llvm::Instruction::FPTrunc:
+            case llvm::Instruction::FPExt:
+                return {arithmetic, width};
+            case llvm::Instruction::FDiv:
+            case llvm::Instruction::FRem:
+            case llvm::Instruction::UDiv:
+            case llvm::Instruction::SDiv:
+            case llvm::Instruction::URem:
+            case llvm::Instruction::SRem:
+                return {special, width};
+            case llvm::Instruction::Br:
+                return {branch, llvm::cast<llvm::BranchInst>(i)->isConditional() ? 1.0 : 0.0};
+            case llvm::Instruction::Switch:
+                return {branch, 1};
+            case llvm::Instruction::Call:
+                return costOfCall(*llvm::cast<llvm::CallInst>(i));
+            case llvm::Instruction::GetElementPtr: {
+                const auto* at = llvm::cast<llvm::GetElementPtrInst>(i);
+                return {integer, at->hasAllConstantIndices() || at->getAddressSpace() == 0 ? 0.0 : 1.0};
+            }
+            case llvm::Instruction::Select:
+            case llvm::Instruction::ICmp:
+            case llvm::Instruction::Add:
+            case llvm::Instruction::Sub:
+            case llvm::Instruction::Mul:
+            case llvm::Instruction::And:
+            case llvm::Instruction::Or:
+            case llvm::Instruction::Xor:
+            case llvm::Instruction::Shl:
+            case llvm::Instruction::LShr:
+            case llvm::Instruction::AShr:
+                return {integer, width};
+            default:
+                return {};
+        }
+    }
+    Cost costOf(const llvm::Instruction* i) {
+        const auto [found, fresh] = costs_.try_emplace(i);
+        if (fresh) {
+            found->second = computeCost(i);
+            found->second.begins = i == &i->getParent()->front();
+            if (found->second.begins) found->second.block = blockOf(i->getParent());
+        }
+        return found->second;
+    }
+
+    // Blocks are numbered in the order of their function, and their operations summed.
+    unsigned blockOf(const llvm::BasicBlock* block) {
+        const auto known = blocks_.find(block);
+        if (known != blocks_.end()) return known->second;
+        for (const llvm::BasicBlock& each : *block->getParent()) {
+            blocks_[&each] = static_cast<unsigned>(blockOperations_.size());
+            double sum = 0;
+            for (const llvm::Instruction& i : each) {
+                sum += computeCost(&i).count;
+                if (llvm::isa<llvm::LoadInst>(i) || llvm::isa<llvm::StoreInst>(i) || llvm::isa<llvm::AtomicRMWInst>(i)) sum += 1;
+            }
+            blockOperations_.push_back(sum);
+        }
+        return blocks_.at(block);
+    }
+    // The operations of threads that run in step: whatever of them is furthest behind goes on, with all that are at the same block, so that
+    // threads wait for each other at the end of a loop (Fung et al. 2007 compare such policies).
+    double inStep(size_t first, size_t end) {
+        at_.assign(end - first, 0);
+        double sum = 0;
+        for (;;) {
+            unsigned next = UINT_MAX;
+            for (size_t k = first; k < end; ++k)
+                if (at_[k - first] < threads_[k].blocks.size()) next = std::min(next, threads_[k].blocks[at_[k - first]]);
+            if (next == UINT_MAX) return sum;
+            sum += blockOperations_[next];
+            for (size_t k = first; k < end; ++k)
+                if (at_[k - first] < threads_[k].blocks.size() && threads_[k].blocks[at_[k - first]] == next) ++at_[k - first];
+        }
+    }
+
+    static size_t indexOf(const oclgrind::WorkItem* item) {
+        const oclgrind::Size3 id = item->getLocalID(), size = item->getWorkGroup()->getGroupSize();
+        return (id.z * size.y + id.y) * size.x + id.x;
+    }
+    Thread& threadOf(const oclgrind::WorkItem* item) { return threads_[indexOf(item)]; }
+
+    // The n-th access of an instruction by each thread of 32 is one access of the warp, to the sectors that these threads touch.
+    void touch(const oclgrind::WorkItem* item, size_t address, size_t size, std::unordered_set<size_t>& of) {
+        const size_t index = indexOf(item), warp = index / 32;
+        auto& warps = merged_[item->getCurrentInstruction()];
+        if (warps.size() <= warp) warps.resize(warp + 1);
+        auto& occurrences = warps[warp];
+        std::vector<size_t>& seen = occurrence_[item->getCurrentInstruction()];
+        if (seen.size() < threads_.size()) seen.resize(threads_.size());
+        size_t& at = seen[index];
+        if (occurrences.size() <= at) occurrences.resize(at + 1);
+        auto& sectors = occurrences[at];
+        ++at;
+        for (size_t sector = address / kSector; sector <= (address + size - 1) / kSector; ++sector) {
+            if (std::find(sectors.begin(), sectors.end(), sector) == sectors.end()) sectors.push_back(sector);
+            touched_.insert(sector);
+            of.insert(sector);
+        }
+    }
+
+    void write() const {
+        const char* path = std::getenv("RIVULET_COUNTS");
+        if (path == nullptr) return;
+        std::FILE* file = std::fopen(path, "w");
+        if (file == nullptr) return;
+        std::fprintf(file, "kernel,calls,threads");
+        for (const char* name : kNames) std::fprintf(file, ",%s", name);
+        std::fprintf(file,
+                     ",load_bytes,store_bytes,step8,step32,step64,longest,longest_loads,sectors,group_bytes,read_bytes,written_bytes\n");
+        for (const auto& [name, s] : all_) {
+            std::fprintf(file, "%s,%.0f,%.1f", name.c_str(), s.calls, s.threads / s.calls);
+            for (const double c : s.count) std::fprintf(file, ",%.4g", c / s.threads);
+            std::fprintf(file, ",%.4g,%.4g", s.loadBytes / s.threads, s.storeBytes / s.threads);
+            for (const double w : s.inStep) std::fprintf(file, ",%.5g", w / s.threads);
+            std::fprintf(file, ",%.5g,%.5g,%.4g,%.4g,%.4g,%.4g\n", s.longest / s.calls, s.longestLoads / s.calls, s.sectors / s.threads,
+                         s.groupBytes / s.threads, s.readBytes / s.threads, s.writtenBytes / s.threads);
+        }
+        std::fclose(file);
+    }
+
+    std::map<std::string, Sums> all_;
+    Sums* sums_ = nullptr;
+    std::vector<Thread> threads_;
+    Thread longest_;
+    double longestTime_ = 0;
+    std::unordered_map<const llvm::Instruction*, Cost> costs_;
+    std::unordered_map<const llvm::BasicBlock*, unsigned> blocks_;
+    std::vector<double> blockOperations_;
+    std::vector<size_t> at_;  // of each thread's blocks
+    std::unordered_set<size_t> touched_, read_, written_;
+    // instruction -> warp -> occurrence -> sectors
+    std::unordered_map<const llvm::Instruction*, std::vector<std::vector<std::vector<size_t>>>> merged_;
+    std::unordered_map<const llvm::Instruction*, std::vector<size_t>> occurrence_;  // of each thread
+};
+
+}  // namespace
+
+static Counter* counter = nullptr;
+
+extern "C" {
+void initializePlugins(oclgrind::Context* context) {
+    counter = new Counter(context);
+    context->registerPlugin(counter);
+}
+void releasePlugins(oclgrind::Context* context) {
+    context->unregisterPlugin(counter);
+    delete counter;
+}
+}

@@ -1,0 +1,91 @@
+// The cost model of GPUs: its tables name real kernels, and its predictions follow from what a device can do.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "fluid/session/reference_data.h"
+#include "fluid/validate/gpu_cost.h"
+
+namespace rivulet::gpu_cost_test {
+namespace {
+
+double frameMs(const GpuSpec& gpu, const char* method, double particles) {
+    return predictSteps(gpu, method, particles, measuredWork(method, particles)).ms();
+}
+
+TEST(GpuCost, TablesNameKernelsThatExist) {
+    const ReferenceRows table = rowsOf(gpuTables(), "kernels");
+    std::set<std::string_view> methods;
+    for (const auto& row : table.rows) {
+        ASSERT_EQ(row.size(), table.columns.size());
+        methods.insert(row[table.column("method")]);
+        EXPECT_TRUE(std::filesystem::exists(RIVULET_SOURCE_DIR "/shaders/" + std::string(row[table.column("kernel")]) + ".kernel"))
+            << row[table.column("kernel")];
+        // Threads in step take at least as long as on average, wider groups longer, and none longer than the longest.
+        double operations = 0;
+        for (const char* kind :
+             {"arithmetic", "special", "integers", "branches", "uniforms", "loads", "stores", "atomics", "shared", "barriers"})
+            operations += numberIn(row[table.column(kind)]);
+        const double step8 = numberIn(row[table.column("step8")]), step64 = numberIn(row[table.column("step64")]);
+        EXPECT_GE(step8, 0.999 * operations);
+        EXPECT_GE(numberIn(row[table.column("step32")]), 0.999 * step8);
+        EXPECT_GE(step64, 0.999 * numberIn(row[table.column("step32")]));
+        EXPECT_GE(numberIn(row[table.column("longest")]), 0.999 * operations);
+        // A dispatch touches no more sectors than its accesses have bytes, rounded up to whole sectors.
+        EXPECT_LE(numberIn(row[table.column("read_bytes")]),
+                  32 * (numberIn(row[table.column("loads")]) + numberIn(row[table.column("atomics")])) + 64);
+    }
+    EXPECT_EQ(methods, (std::set<std::string_view>{"wcsph", "pbf", "dfsph"}));
+}
+
+TEST(GpuCost, HalfOfTheBandwidthDoublesWhatIsLimitedByMemory) {
+    GpuSpec gpu = publishedGpus().front();
+    for (double& s : gpu.seconds) s = 0;
+    gpu.cache = gpu.launch = gpu.operationLatency = gpu.loadLatency = 0;
+    const double whole = frameMs(gpu, "pbf", 1.0e6);
+    EXPECT_GT(whole, 0);
+    gpu.bandwidth /= 2;
+    EXPECT_NEAR(frameMs(gpu, "pbf", 1.0e6) / whole, 2, 1.0e-9);
+}
+
+TEST(GpuCost, ADispatchTakesAtLeastItsLaunchAndItsLongestThread) {
+    GpuSpec gpu = publishedGpus().front();
+    for (double& s : gpu.seconds) s = 0;
+    gpu.cache = gpu.resident = gpu.loadLatency = gpu.operationLatency = 0;
+    gpu.bandwidth = 1.0e30;
+    gpu.launch = 1.0e-5;
+    const FrameCost launches = predictSteps(gpu, "wcsph", 1000, {.substeps = 10, .iterations = 0});
+    for (const PassCost& pass : launches.passes) EXPECT_NEAR(pass.ms, 0.01 * pass.dispatches, 1.0e-9) << pass.name;
+    gpu.operationLatency = 1.0e-9;  // a few particles do not fill a GPU: a sweep over neighbours takes as long for ten times as many
+    const auto sweepMs = [&](double particles) {
+        for (const PassCost& pass : predictSteps(gpu, "wcsph", particles, {.substeps = 10, .iterations = 0}).passes)
+            if (pass.name == "fluid/methods/wcsph_density") return pass.ms;
+        return 0.0;
+    };
+    EXPECT_GT(sweepMs(1.0e4), 0.1);
+    EXPECT_NEAR(sweepMs(1.0e4) / sweepMs(1.0e5), 1, 0.1);  // the mix of its operations changes a little
+}
+
+TEST(GpuCost, FasterGpusAreFasterAndMoreParticlesCostMore) {
+    const std::vector<GpuSpec> all = publishedGpus();
+    ASSERT_GE(all.size(), 10U);
+    EXPECT_EQ(all.front().name, "GTX 1060");
+    EXPECT_EQ(all.back().name, "H200");
+    for (const char* method : {"wcsph", "pbf", "dfsph"}) {
+        for (const GpuSpec& gpu : all) EXPECT_LT(frameMs(gpu, method, 1.0e5), frameMs(gpu, method, 1.0e6)) << gpu.name << method;
+        EXPECT_GT(frameMs(all.front(), method, 1.0e6), 3 * frameMs(all.back(), method, 1.0e6)) << method;
+    }
+    EXPECT_GT(predictPicture(all.front(), 1.0e6).ms(), predictPicture(all.front(), 1.0e5).ms());
+}
+
+TEST(GpuCost, AGpuIsFoundByItsNameOrItsBandwidth) {
+    EXPECT_EQ(nearestGpu("NVIDIA GeForce RTX 3060/PCIe/SSE2", 0).gpu.name, "RTX 3060");
+    EXPECT_TRUE(nearestGpu("AMD Radeon RX 6800 (navi21, LLVM 15, DRM 3.49)", 0).byName);
+    const NearestGpu unknown = nearestGpu("some other GPU", 190.0e9);
+    EXPECT_FALSE(unknown.byName);
+    EXPECT_EQ(unknown.gpu.name, "GTX 1060");
+}
+
+}  // namespace
+}  // namespace rivulet::gpu_cost_test

@@ -1,0 +1,95 @@
+// `rivulet bench gpu`: compares the devices with the cpu, measures, and says so in JSON; a kernel that is wrong ends it with exit status 1.
+#include <gtest/gtest.h>
+#include <json/json.h>
+
+#include <fstream>
+
+#include "engine/core/file.h"
+#include "tests/unit/program_runner.h"
+
+namespace rivulet::testing::program_gpu_test {
+namespace {
+
+Json::Value readJson(const std::string& path) {
+    Json::Value value;
+    std::ifstream file(path);
+    std::string errors;
+    EXPECT_TRUE(Json::parseFromStream(Json::CharReaderBuilder(), file, &value, &errors)) << path << ": " << errors;
+    return value;
+}
+
+bool absent(const Outcome& outcome) { return outcome.err.find("this machine has neither") != std::string::npos; }
+
+TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
+    const Scratch scratch;
+    const std::string json = (scratch.path() / "gpu.json").string();
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--json", json});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    if (absent(outcome)) GTEST_SKIP() << outcome.err;
+    EXPECT_NE(outcome.out.find("computes the same water as the cpu; "), std::string::npos) << outcome.out;
+    const Json::Value gpu = readJson(json)["gpu"];
+    EXPECT_TRUE(gpu["correct"].asBool());
+    EXPECT_GT(gpu["seconds"].asDouble(), 0);
+    EXPECT_NE(outcome.out.find(gpu["sentence"].asString()), std::string::npos);
+    ASSERT_GT(gpu["devices"].size(), 0U);
+    // Per device: each method's positions and velocities, and those with forces.
+    EXPECT_GE(gpu["checks"].size(), 8 * gpu["devices"].size());
+    for (const Json::Value& check : gpu["checks"]) {
+        EXPECT_TRUE(check["pass"].asBool()) << check["what"].asString();
+        EXPECT_LE(check["difference"].asDouble(), check["limit"].asDouble());
+        EXPECT_FALSE(check["unit"].asString().empty());
+    }
+    for (const Json::Value& device : gpu["devices"]) {
+        for (const char* key : {"backend", "name", "driver", "predictedFrom"}) EXPECT_TRUE(device[key].isString()) << key;
+        for (const char* key : {"bytesPerSecond", "arithmetic", "integer", "special", "loads", "rounds", "dispatchMs"})
+            EXPECT_GT(device["rates"][key].asDouble(), 0) << key;
+    }
+    EXPECT_EQ(gpu["series"].size(), 3 * gpu["devices"].size());  // the smallest size of each method
+    for (const Json::Value& row : gpu["series"]) {
+        const std::string what = row["device"].asString() + ", " + row["method"].asString();
+        for (const char* key : {"stepMs", "predictedStepMs", "frameMs", "predictedFrameMs", "particles"})
+            EXPECT_GT(row[key].asDouble(), 0) << what << key;
+        EXPECT_TRUE(row["passes"].isObject() && row["predictedPasses"].isObject()) << what;
+        // The model knows every kernel that takes a twentieth of the time.
+        double whole = 0;
+        for (const Json::Value& ms : row["passes"]) whole += ms.asDouble();
+        for (const std::string& pass : row["passes"].getMemberNames())
+            if (row["passes"][pass].asDouble() > 0.05 * whole) EXPECT_TRUE(row["predictedPasses"].isMember(pass)) << what << ": " << pass;
+    }
+}
+
+TEST(ProgramGpu, AWrongKernelIsNamedAndEndsWithOne) {
+    const Scratch scratch;
+    const std::filesystem::path root = scratch.path() / "root";
+    std::filesystem::create_directories(root);
+    std::filesystem::copy(RIVULET_SOURCE_DIR "/shaders", root / "shaders", std::filesystem::copy_options::recursive);
+    const std::string kernel = (root / "shaders/fluid/methods/pbf_shift.kernel").string();
+    const Result<std::string> text = readFile(kernel);
+    ASSERT_TRUE(text);
+    const std::string right = "real3 x = xi - sum * LIGHTNESS;";
+    const size_t at = text->find(right);
+    ASSERT_NE(at, std::string::npos);
+    std::ofstream(kernel) << std::string(*text).replace(at, right.size(), "real3 x = xi + sum * LIGHTNESS;");
+    RunOptions options;
+    options.environment["RIVULET_SHADERS"] = root.string();
+    const std::string json = (scratch.path() / "gpu.json").string();
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--json", json}, options);
+    if (absent(outcome)) GTEST_SKIP() << outcome.err;
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("pbf: positions after 10 steps differ by"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("wcsph: positions"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.out.find("does not compute the same water as the cpu"), std::string::npos) << outcome.out;
+    const Json::Value all = readJson(json);  // it is written nevertheless: a person sends it
+    EXPECT_FALSE(all["gpu"]["correct"].asBool());
+    EXPECT_NE(all["error"].asString().find("pbf"), std::string::npos);
+}
+
+TEST(ProgramGpu, BadArgumentsAreRefused) {
+    expectRefusal(runProgram({"bench", "gpus"}), 2, "did you mean 'gpu'");
+    expectRefusal(runProgram({"bench", "gpu", "--quik"}), 2, "did you mean '--quick'");
+    expectRefusal(runProgram({"bench", "gpu", "--json", "/no_such_folder/gpu.json"}), 1, "/no_such_folder");
+    EXPECT_NE(runProgram({"bench", "--help"}).out.find("\n  gpu "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rivulet::testing::program_gpu_test

@@ -509,7 +509,7 @@ TEST(ProgramSweep, AParameterThatIsNamedInBracesReachesItsRuns) {
         const Scratch scratch;
         scratch.file("small.json", smallScene());
         scratch.file("s.json", R"({"commands": [)" + commands + R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
-        expectRefusal(runProgram({"sweep", "s.json"}, in(scratch)), 2, "--set n=7: no parameter");
+        expectRefusal(runProgram({"sweep", "s.json"}, in(scratch)), 2, "--set n=7: n is not a parameter");
         scratch.file("s.json", R"({"commands": ["/bin/echo {n}", )" + commands +
                                    R"(], "parameters": {"fluid.gravity": ["0,-9,0", "0,-1,0"], "n": [7]}})");
         const Outcome swept = runProgram({"sweep", "s.json"}, in(scratch));

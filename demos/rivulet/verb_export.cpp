@@ -262,7 +262,7 @@ int exportRecording(const ExportRequest& request) {
     const RecordedRun run = recordedRun(reader->about());
     std::vector<DataAttribute> attributes;
     if (run.scene.empty()) {
-        log.notice(fmt::format("{} has no parameters, because an earlier version recorded it: none are written", request.scene));
+        log.notice(fmt::format("{} has no parameters, because the program that recorded it wrote none", request.scene));
     } else {
         SceneFile scene;
         if (Status read = readJson(run.scene, request.scene, [&scene](ParamVisitor& v) { scene.visit(v); }); !read)

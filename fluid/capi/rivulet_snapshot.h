@@ -34,8 +34,8 @@ RIVULET_API void rivulet_snapshot_destroy(rivulet_snapshot* snapshot);
 RIVULET_API rivulet_status rivulet_world_snapshot(rivulet_world* world, rivulet_snapshot* snapshot, rivulet_error* why);
 /* Records what is drawn of the world into a file: each rivulet_world_step from now on adds its frame, which waits for a GPU. path NULL:
    ends the recording; so does the world's destruction. Until then an older file of the name stays as it is. RIVULET_FAILED, also of a step:
-   the file cannot be written; the recording has then ended. Wetness, drops of skins and attributes of particles are not
-   recorded. */
+   the file cannot be written; the recording has then ended. The file names the parameters of the world as they are now, the device and the
+   library's version. Wetness, drops of skins and attributes of particles are not recorded. */
 RIVULET_API rivulet_status rivulet_world_record(rivulet_world* world, const char* path, rivulet_error* why);
 /* Puts frame `frame` (from 0) of a recorded file into the snapshot, with the look and liquid of `world`, which is not changed. Frames can
    be read in any order. The file stays open until another is given or the snapshot is destroyed.

@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "engine/core/json.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/drawing.h"
 #include "fluid/capi/versioned.h"
@@ -116,7 +117,13 @@ rivulet_status rivulet_world_record(rivulet_world* world, const char* path, rivu
             return closed;
         }
         if (path == nullptr) return badInput("path is NULL, and the world is not being recorded");
-        Result<RecordingWriter> writer = RecordingWriter::open(path, "");
+        WorldParams none;
+        const VisitFn defaults = [&none](ParamVisitor& v) { none.visit(v); };
+        const Device& device = *world->context->device;
+        Result<RecordingWriter> writer =
+            RecordingWriter::open(path, textOf({.version = RIVULET_VERSION,
+                                                .device = fmt::format("{}: {}", backendName(device.backend()), device.info().name),
+                                                .scene = writeJson([world](ParamVisitor& v) { world->params.visit(v); }, &defaults)}));
         if (!writer) return writer.error();
         recording.emplace(std::move(*writer));
         return ok();

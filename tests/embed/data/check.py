@@ -45,6 +45,10 @@ xarray.testing.assert_equal(column.load(), xarray.open_zarr("scene/column.zarr")
 third = h5py.File("sets/column.h5")
 assert (third["time"][:] == t[::3]).all() and (third["position"][:] == h5py.File("scene/column.h5")["position"][::3]).all(), "a run recorded is that exported"
 
+library = xarray.open_dataset("sets/library.h5")
+assert np.isclose(library.attrs["fluid.viscosity"], 4e-6) and np.isclose(library.attrs["fluid.spacing"], 0.04) and library.attrs["emitters[0].speed"] == 1.5
+assert library.attrs["source"].split()[1] in library.attrs["simulated_by"] and " on cpu: " in library.attrs["simulated_by"], library.attrs["simulated_by"]
+
 foam = xarray.open_zarr("sets/foam.zarr")
 assert foam.foam_count.max() > 10 and foam.foam_position.dims == ("time", "foam", "xyz")
 kinds, sizes = foam.foam_kind.values, foam.foam_size.values

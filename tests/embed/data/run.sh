@@ -4,7 +4,8 @@
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 root="$here/../../.."
-program="$(cd "$1" && pwd)/bin/rivulet"
+built="$(cd "$1" && pwd)"
+program="$built/bin/rivulet"
 . "$here/../modules.sh"
 need_modules h5py netCDF4 numpy xarray zarr
 work="$(mktemp -d)"
@@ -27,6 +28,19 @@ done
 "$program" export fall.json --format csv --seconds 0.25 --backend cpu --out csv >log 2>&1
 "$program" run column.json --no-render --frames 50 --backend cpu --set fluid.foam.most=2000 --set fluid.foam.trappedAir=100000 --record foam.rrec --out stats >log 2>&1 || { cat log; exit 1; }
 "$program" export foam.rrec --format zarr --out sets >log 2>&1
+# A recording that the library made has its world's parameters, too.
+RIVULET_LIBRARY="$built/librivulet.so" PYTHONPATH="$root/fluid/python" /usr/bin/python3 - <<'END'
+import rivulet
+scene = {"fluid": {"spacing": 0.04, "viscosity": 3e-6, "blocks": [{"max": [0.2, 0.4, 0.2]}]},
+         "emitters": [{"position": [0.6, 0.6, 0.6], "speed": 1.5}]}
+with rivulet.Context(backend="cpu") as context, context.world(scene) as world:
+    world.set("fluid.viscosity", 4e-6)
+    with world.record("library.rrec"):
+        for _ in range(3):
+            world.step(1 / 60)
+END
+"$program" export library.rrec --format hdf5 --out sets >log 2>&1
+if grep -q "has no parameters" log; then cat log; exit 1; fi
 /usr/bin/python3 "$here/check.py"
 # An export that is killed leaves a hidden folder, which the next one of that name removes; not those of processes that run, or of other machines.
 mkdir killed

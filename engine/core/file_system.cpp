@@ -35,7 +35,12 @@ FileFacts::Kind kindOf(mode_t mode) {
 
 FileFacts factsOf(int failed, const struct stat& facts) {
     if (failed != 0) return {.error = errno};
-    return {.kind = kindOf(facts.st_mode), .bytes = static_cast<uint64_t>(facts.st_size), .mode = facts.st_mode & 07777U};
+    return {.kind = kindOf(facts.st_mode),
+            .bytes = static_cast<uint64_t>(facts.st_size),
+            .mode = facts.st_mode & 07777U,
+            .device = facts.st_dev,
+            .number = facts.st_ino,
+            .changed = static_cast<uint64_t>(facts.st_mtim.tv_sec) * 1'000'000'000U + static_cast<uint64_t>(facts.st_mtim.tv_nsec)};
 }
 
 int errorOf(int failed) { return failed == 0 ? 0 : errno; }

@@ -16,6 +16,9 @@ struct FileFacts {
     uint64_t bytes = 0;      // of a regular file
     unsigned mode = 0;       // permissions, as chmod(2)
     bool isVirtual = false;  // an open file of a file system that the kernel makes up (/proc, /sys)
+    // Which file it is (on Windows 0, 0: an open file cannot be replaced there), and when its bytes last changed, in the system's own unit.
+    uint64_t device = 0, number = 0, changed = 0;
+    bool operator==(const FileFacts&) const = default;
 };
 FileFacts factsOf(const std::string& path);  // links are followed
 FileFacts factsOf(const Descriptor& file);

@@ -48,6 +48,8 @@ int errnoOf(DWORD error) {
     }
 }
 
+uint64_t numberOf(const FILETIME& time) { return uint64_t{time.dwHighDateTime} << 32U | time.dwLowDateTime; }
+
 int lastError(bool done) { return done ? 0 : errnoOf(::GetLastError()); }
 
 // CON, NUL and the like are devices in every folder; GetFileAttributes says so of none of them.
@@ -69,7 +71,8 @@ FileFacts factsOf(const std::string& path) {
     const bool locked = (data.dwFileAttributes & FILE_ATTRIBUTE_READONLY) != 0;
     return {.kind = folder ? FileFacts::Kind::folder : FileFacts::Kind::regular,
             .bytes = uint64_t{data.nFileSizeHigh} << 32U | data.nFileSizeLow,
-            .mode = locked ? unsigned{_S_IREAD} : unsigned{_S_IREAD | _S_IWRITE}};
+            .mode = locked ? unsigned{_S_IREAD} : unsigned{_S_IREAD | _S_IWRITE},
+            .changed = numberOf(data.ftLastWriteTime)};
 }
 
 FileFacts factsOf(const Descriptor& file) {
@@ -78,7 +81,9 @@ FileFacts factsOf(const Descriptor& file) {
     if (type != FILE_TYPE_DISK) return {.kind = FileFacts::Kind::device};
     LARGE_INTEGER bytes = {};
     if (!::GetFileSizeEx(handleOf(file), &bytes)) return {.error = errnoOf(::GetLastError())};
-    return {.kind = FileFacts::Kind::regular, .bytes = static_cast<uint64_t>(bytes.QuadPart)};
+    FILETIME written = {};
+    (void)::GetFileTime(handleOf(file), nullptr, nullptr, &written);
+    return {.kind = FileFacts::Kind::regular, .bytes = static_cast<uint64_t>(bytes.QuadPart), .changed = numberOf(written)};
 }
 
 std::optional<std::string> followed(const std::string& path) {

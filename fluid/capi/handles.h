@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/core/file_system.h"
 #include "engine/core/jobs.h"
 #include "engine/gpu/host_state.h"
 #include "fluid/capi/bodies.h"
@@ -96,6 +97,7 @@ struct rivulet_snapshot {
     std::atomic<bool> used = false;  // a call fills or draws it
     std::optional<rivulet::RecordingReader> recording;
     std::string recordingPath;
+    rivulet::FileFacts recordingFacts;  // when it was opened
 };
 
 struct rivulet_skin {

@@ -38,7 +38,7 @@ RIVULET_API rivulet_status rivulet_world_snapshot(rivulet_world* world, rivulet_
    library's version. Wetness, drops of skins and attributes of particles are not recorded. */
 RIVULET_API rivulet_status rivulet_world_record(rivulet_world* world, const char* path, rivulet_error* why);
 /* Puts frame `frame` (from 0) of a recorded file into the snapshot, with the look and liquid of `world`, which is not changed. Frames can
-   be read in any order. The file stays open until another is given or the snapshot is destroyed.
+   be read in any order. The file stays open until another is given, or one of the same name that has changed, or the snapshot is destroyed.
    RIVULET_BAD_INPUT: it is no recording, is damaged or has no such frame. */
 typedef struct rivulet_recorded {
     size_t size;

@@ -137,11 +137,13 @@ rivulet_status rivulet_snapshot_replay(rivulet_snapshot* snapshot, const rivulet
         if (path == nullptr) return badInput("path is NULL");
         const Claim mine(snapshot->used);
         if (!mine.mine()) return inUse();
-        if (!snapshot->recording || snapshot->recordingPath != path) {
+        const FileFacts facts = factsOf(path);
+        if (!snapshot->recording || snapshot->recordingPath != path || !(snapshot->recordingFacts == facts)) {
             Result<RecordingReader> reader = RecordingReader::open(path);
             if (!reader) return reader.error();
             snapshot->recording.emplace(std::move(*reader));
             snapshot->recordingPath = path;
+            snapshot->recordingFacts = facts;
         }
         RecordingReader& reader = *snapshot->recording;
         if (frame >= reader.frames())

@@ -176,6 +176,15 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         first, last = snapshot.replay(world, path, 0), snapshot.replay(world, path, 3)
         assert (first.frames, last.frames) == (4, 4) and abs(last.time - first.time - 3 / 60) < 1e-9
         refused(lambda: snapshot.replay(world, path, 4), "4")
+        # The same path recorded again is read again; the file names the world's parameters.
+        world.reset()
+        with world.record(path):
+            for _ in range(6):
+                world.step(1 / 60)
+        again = snapshot.replay(world, path, 5)
+        assert again.frames == 6 and abs(again.time - 6 / 60) < 1e-9, again
+        about = open(path, "rb").read(4096)
+        assert b'run.version = %s\n' % rivulet.version().encode() in about and b"run.device = cpu: " in about and b'"spacing"' in about, about
         snapshot.take(world)
         refused(lambda: world.picture(rivulet.Camera((2, 2, 2), (0, 0, 0))), "off_screen=True")
 

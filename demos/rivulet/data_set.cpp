@@ -92,7 +92,7 @@ Status DataSetWriter::put(const DataVariable& variable, size_t count, const void
 Status DataSetWriter::add(RecordedFrame frame) {
     const size_t count = frame.position.size();
     if (!file_) {
-        Result<DataFile> file = format_->create(path_, std::clamp(count, kLeastChunk, kMostChunk));
+        Result<DataFile> file = format_->create(path_, std::clamp(std::max(count, expected_), kLeastChunk, kMostChunk));
         if (!file) return file.error();
         file_ = std::make_unique<DataFile>(std::move(*file));
     }

@@ -76,6 +76,8 @@ class DataSetWriter {
     // Error (failed): a folder of this name exists and is not replaced; not writable; the format's library is missing.
     static Result<DataSetWriter> open(const DataSetFormat& format, const std::string& path);
     Status add(RecordedFrame frame);
+    // Before the first frame: particles of the largest frame, so that a chunk holds a frame. Without it all are taken to be as the first.
+    void expect(size_t particles) { expected_ = particles; }
     Status close(std::vector<DataAttribute> attributes);
     size_t frames() const { return times_.size(); }
     size_t particles() const { return particles_; }  // of all frames
@@ -89,7 +91,7 @@ class DataSetWriter {
     std::unique_ptr<DataFile> file_;  // null: before the first frame
     std::vector<double> times_;
     std::map<std::string, size_t> lengths_;
-    size_t particles_ = 0;
+    size_t particles_ = 0, expected_ = 0;
 };
 
 }  // namespace rivulet

@@ -132,6 +132,7 @@ class Writer {
     Status add(int f, const Session& session) {
         const FluidWorld& world = session.world();
         if (frames_) {
+            frames_->expect(world.particles().count);  // with the room that emitters fill
             RecordedFrame frame = rivulet::frameOf(session);
             if (Status sound = stillWorks(world.device()); !sound) return sound;
             if (Status written = frames_->add(std::move(frame)); !written) return written;
@@ -280,6 +281,7 @@ int exportRecording(const ExportRequest& request) {
     if (Status made = makeFolder(request.out); !made) return report(made.error());
     Result<DataSetWriter> writer = DataSetWriter::open(*dataSetFormats().find(request.format), path);
     if (!writer) return report(writer.error());
+    writer->expect(reader->largest());
     const Graceful graceful;
     Progress progress(request.scene);
     for (size_t f = 0; f < reader->frames(); f += static_cast<size_t>(request.every.value_or(1))) {

@@ -351,6 +351,21 @@ Status RecordingReader::scan() {
     return ok();
 }
 
+size_t RecordingReader::largest() const {
+    constexpr uint64_t kFirstBlock = size_t{1} << 18U;  // bytes that surely hold a zstd frame's first block
+    size_t most = 0;
+    std::vector<std::byte> packed;
+    std::vector<Counts> counts;
+    for (const uint64_t offset : offsets_) {
+        FrameHead head{};
+        if (!take(offset, &head, sizeof(head)) || head.mark != kFrame) continue;
+        packed.resize(std::min(head.packedBytes, kFirstBlock));
+        if (take(offset + sizeof(head), packed.data(), packed.size()) && ArrayUnpacker(packed).take(1, counts))
+            most = std::max<size_t>(most, counts[0].items[0]);
+    }
+    return most;
+}
+
 Result<RecordedFrame> RecordingReader::read(size_t k, size_t memoryLimit) {
     ASSERT(k < frames(), "ask for a frame that there is");
     try {

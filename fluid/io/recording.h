@@ -82,6 +82,8 @@ class RecordingReader {
 
     const std::string& about() const { return about_; }
     size_t frames() const { return offsets_.size(); }  // at least 1
+    // Particles of the largest frame, by the frames' first bytes: an estimate, because no checksum is compared.
+    size_t largest() const;
     // A sentence if the file has no end, because the run was killed or a copy was cut off; else "".
     const std::string& cut() const { return cut_; }
     // Frame k < frames(). A frame of more than `memoryLimit` bytes is refused. Error: as open.

@@ -100,3 +100,23 @@ TEST(ProgramExport, ADataSetIsWholeOrNotThere) {
 
 }  // namespace
 }  // namespace rivulet::testing::program_export_test
+// Water that grows from 100 to 4,000 particles, of a scene and of its recording.
+TEST(ProgramExport, AChunkHoldsOneFrameWhereWaterGrows) {
+    const Scratch scratch;
+    scratch.file("tap.json", R"({"name": "tap", "fluid": {"spacing": 0.01, "box": {"max": [0.6, 0.4, 0.3]}}, "emitters": [
+        {"position": [0.3, 0.3, 0.15], "direction": [0, -1, 0], "speed": 2, "litresPerSecond": 40, "radius": 0.1}]})");
+    ASSERT_EQ(runProgram({"run", "tap.json", "--no-render", "--frames", "8", "--backend", "cpu", "--record", "tap.rrec"}, in(scratch)).code,
+              0);
+    for (const char* source : {"tap.json", "tap.rrec"}) {
+        std::filesystem::remove_all(scratch.path() / "sets");
+        std::vector<std::string> words = {"export", source, "--format", "zarr", "--out", "sets"};
+        if (source == std::string("tap.json")) words.insert(words.end(), {"--seconds", "0.133334", "--backend", "cpu"});
+        const Outcome outcome = runProgram(words, in(scratch));
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_TRUE(std::filesystem::exists(scratch.path() / "sets/tap.zarr/position/7.0.0"));
+        EXPECT_FALSE(std::filesystem::exists(scratch.path() / "sets/tap.zarr/position/7.1.0")) << source;
+        const std::string shape = scratch.text("sets/tap.zarr/position/.zarray");
+        EXPECT_GT(std::stoul(shape.substr(shape.find("[8, ") + 4)), 2000U) << shape;
+    }
+}
+

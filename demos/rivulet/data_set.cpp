@@ -24,9 +24,9 @@ constexpr auto kCreateHdf5 = createHdf5;
 constexpr Result<DataFile> (*kCreateHdf5)(const std::string&, size_t) = nullptr;
 #endif
 constexpr DataSetFormat kRows[] = {
-    {"hdf5", "all frames in one HDF5 file, which is netCDF-4, too; for h5py and xarray", "h5", kCreateHdf5,
+    {"hdf5", "all frames in one HDF5 file, which is netCDF-4, too; for h5py and xarray", "h5", true, kCreateHdf5,
      "this program was built without HDF5; install libhdf5-dev and build it again, or use --format zarr"},
-    {"zarr", "all frames in one folder of compressed chunks (Zarr version 2); for zarr-python and xarray", "zarr", createZarr, ""},
+    {"zarr", "all frames in one folder of compressed chunks (Zarr version 2); for zarr-python and xarray", "zarr", false, createZarr, ""},
 };
 constexpr Table<DataSetFormat> kTable{kRows};
 
@@ -75,7 +75,8 @@ std::vector<DataAttribute> parametersOf(SceneFile scene) {
 Result<DataSetWriter> DataSetWriter::open(const DataSetFormat& format, const std::string& path) {
     if (format.create == nullptr) return failed(format.missing);
     std::error_code error;
-    if (std::filesystem::is_directory(path, error))
+    const std::filesystem::file_status there = std::filesystem::symlink_status(path, error);
+    if (std::filesystem::exists(there) && (!format.replaces || std::filesystem::is_directory(path, error)))
         return failed(fmt::format("{} exists; remove it, or choose another folder by --out", path));
     if (Status writable = checkWritable(path); !writable) return writable.error();
     return DataSetWriter(format, path);

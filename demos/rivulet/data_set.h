@@ -58,6 +58,7 @@ struct DataSetFormat {
     const char* name;
     const char* doc;
     const char* ending;
+    bool replaces;  // a file that exists
     // `chunk`: items in a chunk; a chunk never has more than one frame. Null: this build lacks the format's library.
     Result<DataFile> (*create)(const std::string& path, size_t chunk);
     const char* missing;  // remedy if create is null
@@ -73,11 +74,11 @@ std::string jsonText(const std::string& text);  // in quotes
 // Writes a data set frame by frame; holds one frame.
 class DataSetWriter {
   public:
-    // Error (failed): a folder of this name exists and is not replaced; not writable; the format's library is missing.
+    // Error (failed): a folder or file of this name exists and is not replaced; not writable; the format's library is missing.
     static Result<DataSetWriter> open(const DataSetFormat& format, const std::string& path);
-    Status add(RecordedFrame frame);
     // Before the first frame: particles of the largest frame, so that a chunk holds a frame. Without it all are taken to be as the first.
     void expect(size_t particles) { expected_ = particles; }
+    Status add(RecordedFrame frame);
     Status close(std::vector<DataAttribute> attributes);
     size_t frames() const { return times_.size(); }
     size_t particles() const { return particles_; }  // of all frames

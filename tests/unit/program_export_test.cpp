@@ -72,6 +72,11 @@ TEST(ProgramExport, ADataSetIsWholeOrNotThere) {
     EXPECT_TRUE(std::filesystem::exists(scratch.path() / "sets/s.zarr/position/7.0.0"));
     expectRefusal(exported({}, in(scratch)), 1, "sets/s.zarr exists; remove it");
     std::filesystem::remove_all(scratch.path() / "sets");
+    std::filesystem::create_directory(scratch.path() / "sets");
+    scratch.file("sets/s.zarr", "a file");
+    expectRefusal(exported({}, in(scratch)), 1, "sets/s.zarr exists; remove it");
+    EXPECT_EQ(scratch.text("sets/s.zarr"), "a file");
+    std::filesystem::remove_all(scratch.path() / "sets");
 
     RunOptions full = in(scratch);  // as on a full disk: a file may not be longer than this
     full.before = [] {
@@ -98,8 +103,6 @@ TEST(ProgramExport, ADataSetIsWholeOrNotThere) {
         << "nothing is left";
 }
 
-}  // namespace
-}  // namespace rivulet::testing::program_export_test
 // Water that grows from 100 to 4,000 particles, of a scene and of its recording.
 TEST(ProgramExport, AChunkHoldsOneFrameWhereWaterGrows) {
     const Scratch scratch;
@@ -120,3 +123,5 @@ TEST(ProgramExport, AChunkHoldsOneFrameWhereWaterGrows) {
     }
 }
 
+}  // namespace
+}  // namespace rivulet::testing::program_export_test

@@ -175,8 +175,8 @@ std::string beforeAndAfter() {
 constexpr const char* kModel = R"(## The model
 
 Counted, on small worlds, by [tests/gpu_cost](../tests/gpu_cost/README.md): for each kernel operations by kind, loads and stores, the sectors of 32 bytes
-that a dispatch touches, the accesses of 32 threads together, the operations if all threads of a group of 8, 32 or 64 take as long as its longest,
-and those of the longest thread. For each drawing pass: invocations of its shaders, their reads of textures, bytes, and operations. Counts at three
+that a dispatch touches, the accesses of 32 threads together, the operations of groups of 8, 32 and 64 threads that go through the code in step, and
+those of the longest thread. For each drawing pass: invocations of its shaders, their reads of textures, bytes, and operations. Counts at three
 sizes are extended along the inverse edge of the water, as the share of particles at walls is.
 
 A dispatch takes the time of a launch, and the longest of these:
@@ -196,7 +196,8 @@ Figures of GPUs are published ones (`assets/gpus/gpus.csv`, with sources). Of a 
 - Boost clock, and nothing else on the GPU. A GPU that lowers its clock is slower in proportion.
 - Counts are of OpenCL C compiled by clang for Oclgrind; a driver's compiler may contract, unroll or spill otherwise.
 - No second cache: what misses the first is either in it or read once a dispatch.
-- Divergence inside a loop is taken as if the longest thread of a group did what each of the others does, too.
+- Threads in step wait for each other at the end of each branch and loop; GPUs may let them run apart. How much more they do together than alone is
+  that of the largest world counted, with more walls about it than a million particles have: large worlds are faster than predicted by that.
 - Substeps and iterations are the cpu's, of the first frames of a dam break. Queued iterations that a GPU skips cost a launch, and are not counted.
 - Operations of fragment shaders are those of the compiled text, times its counted reads over the reads in that text: loops of reads alone.
 - Latencies of AMD and Intel are about right, not published by them.

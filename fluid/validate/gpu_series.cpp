@@ -85,7 +85,7 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
         device.poll();
         return world.lastSubsteps();
     };
-    for (int k = 0; k < 3; ++k) advance();  // compiles kernels; a GPU at first queues a solver's iterations generously
+    for (int k = 0; k < 8; ++k) advance();  // compiles kernels; a GPU at first queues iterations generously, and reports them late
     device.takeTimes();
     int steps = 0, calls = 0;
     double iterations = 0;

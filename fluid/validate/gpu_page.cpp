@@ -79,8 +79,8 @@ std::string dominating(const std::vector<GpuSpec>& gpus) {
 std::string errorsHere(const GpuModelRun& run) {
     std::string page =
         "## Error on the devices here\n\nTwo devices that are software, with rates measured by tiny kernels (`shaders/bench`) and not "
-        "fitted to the "
-        "result. Times are processor time over the number of threads, ms a substep; error: predicted over measured, less 1.\n\n"
+        "fitted to the result. Times are processor time over the number of threads, ms a substep; error: predicted over measured, less "
+        "1.\n\n"
         "| device | bandwidth, GB/s | arithmetic, 1e9/s | integers | roots | loads | rounds of a loop | dispatch, us |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const ExaminedGpu& g : run.gpus)
@@ -96,7 +96,7 @@ std::string errorsHere(const GpuModelRun& run) {
                                 percent(errorOf(r.predictedDrawMs, r.drawMs)));
     }
     page +=
-        "\nBy pass, of the largest size: the least of all substeps on the wall, and the error. Passes below 2 % of the substep are left "
+        "\nBy pass: shares of the time on the wall, scaled to the substep's or the picture's, and the error. Passes below 2 % are left "
         "out.\n\n"
         "| device | method | pass | measured | predicted | error |\n| --- | --- | --- | --- | --- | --- |\n";
     for (const SeriesRow& r : run.rows) {
@@ -152,11 +152,9 @@ std::string beforeAndAfter() {
     };
     std::string page =
         "## Pair loops, before and after\n\nThe sweeps over neighbours dominated every method. A GPU now first finds the neighbours within "
-        "the "
-        "support radius, a sixth of those in the cells, and computes the terms of these alone, with their images in one sweep (`FOR_PAIRS` "
-        "in "
-        "`shaders/fluid/grid/neighbors.h`). Counted with 1,024 particles, a thread; in step: if 32 threads take as long as the longest of "
-        "them.\n\n"
+        "the support radius, a sixth of those in the cells, and computes the terms of these alone (`FOR_PAIRS` in "
+        "`shaders/fluid/grid/neighbors.h`). Counted with 1,024 particles, a thread; in step: of 32 threads that go through the code "
+        "together, over 32. Times on the devices here are in [performance.md](performance.md#on-a-gpu).\n\n"
         "| kernel | operations, before | after | in step, before | after | longest thread, before | after |\n"
         "| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const std::vector<std::string_view>& b : before.rows)

@@ -129,7 +129,7 @@ Result<std::vector<GpuFinding>> compare(const GpuDevices& devices, const SceneFi
     return findings;
 }
 
-// Steps all methods on all devices, and draws the first method. Returns the row with most particles.
+// Steps all methods on all devices, and draws the first method. Returns the row of the first device and method with most particles.
 Result<std::optional<SeriesRow>> runSeries(const BenchContext& context, const std::vector<ExaminedGpu>& gpus, const SceneFile& scene,
                                            SceneRenderer* renderer, Progress& progress, Json::Value& series) {
     std::optional<SeriesRow> largest;
@@ -164,7 +164,7 @@ Result<std::optional<SeriesRow>> runSeries(const BenchContext& context, const st
                 };
                 report(method, "ms/step", row->stepMs, row->predictedStepMs);
                 if (row->drawMs > 0) report("drawn", "ms", row->drawMs, row->predictedDrawMs);
-                if (!largest || row->particles > largest->particles) largest = std::move(*row);
+                if (&gpu == &gpus.front() && method == kGpuMethods[0]) largest = std::move(*row);
             }
         }
     return largest;

@@ -126,7 +126,7 @@ std::string errorsThere(const std::vector<GpuSpec>& gpus) {
     const ReferenceRows table = rowsOf(gpuTables(), "measured");
     std::string page =
         "## Against a GPU\n\nFrames of [performance.md](performance.md), which the model was not fitted to, with the kernels of that "
-        "version (`assets/gpus/kernels_before.csv`).\n\n"
+        "version (`assets/gpus/kernels_before.csv`, counted with 1,024 particles).\n\n"
         "| GPU | backend | method | particles | measured, ms a frame | predicted | error |\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const std::vector<std::string_view>& row : table.rows) {
         const auto cell = [&](const char* column) { return row[table.column(column)]; };
@@ -198,6 +198,7 @@ Figures of GPUs are published ones (`assets/gpus/gpus.csv`, with sources). Of a 
   that of the largest world counted, with more walls about it than a million particles have: large worlds are faster than predicted by that.
 - Substeps and iterations are the cpu's, of the first frames of a dam break. Queued iterations that a GPU skips cost a launch, and are not counted.
 - Operations of fragment shaders are those of the compiled text, times its counted reads over the reads in that text: loops of reads alone.
+- Occupancy is full, unless `kernels.csv` (column `waves`) says less.
 - Latencies of AMD and Intel are about right, not published by them.
 )";
 

@@ -46,6 +46,13 @@ struct Line {
     }
 };
 
+// Operations of a thread, of all kinds.
+double sumOf(const ReferenceRows& table, const std::vector<std::string_view>& row) {
+    double sum = 0;
+    for (const char* column : kColumns) sum += numberIn(row[table.column(column)]);
+    return sum;
+}
+
 // The kernels of a step with `particles`. What a thread does depends on the share of particles at walls and surfaces, which is proportional
 // to the inverse edge of the water: counts at several sizes are extended along it.
 std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view method, double particles) {
@@ -54,12 +61,12 @@ std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view meth
         std::map<std::string, Line, std::less<>> lines;
         std::set<double> threads;
         double longest = 0, longestLoads = 0, largest = 0;
-        double smallest = 1.0e30, fewest = 0;  // fewest: loads of a thread with the smallest number of particles
+        double smallest = 1.0e30, fewest = 0;  // fewest: operations of a thread with the smallest number of particles
         const std::vector<std::string_view>* last = nullptr;
     };
     const size_t ofMethod = table.column("method"), ofKernel = table.column("kernel"), ofParticles = table.column("particles"),
                  ofThreads = table.column("threads"), ofLongest = table.column("longest"), ofLoads = table.column("longest_loads");
-    constexpr const char* kFitted[] = {"step8", "step32", "step64", "sectors", "read_bytes", "written_bytes"};
+    constexpr const char* kFitted[] = {"sectors", "read_bytes", "written_bytes"};
     std::map<std::string, Samples, std::less<>> kernels;
     for (const std::vector<std::string_view>& row : table.rows) {
         if (row[ofMethod] != method) continue;
@@ -73,7 +80,7 @@ std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view meth
         s.longest = std::max(s.longest, numberIn(row[ofLongest]));
         s.longestLoads = std::max(s.longestLoads, numberIn(row[ofLoads]));
         if (count >= s.largest) s.largest = count, s.last = &row;
-        if (count < s.smallest) s.smallest = count, s.fewest = numberIn(row[table.column("loads")]);
+        if (count < s.smallest) s.smallest = count, s.fewest = sumOf(table, row);
     }
     const double x = 1 / std::cbrt(std::max(particles, 1.0));
     std::vector<KernelWork> all;
@@ -82,7 +89,7 @@ std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view meth
         // A fixed number of threads that share all particles (sums), or does something once: what each of them does grows with their
         // number.
         const bool fixed = s.threads.size() == 1 && s.largest > s.smallest;
-        const double grows = fixed && numberIn((*s.last)[table.column("loads")]) > 1.2 * s.fewest ? particles / s.largest : 1;
+        const double grows = fixed && sumOf(table, *s.last) > 1.2 * s.fewest ? particles / s.largest : 1;
         const auto at = [&, &s = s](const char* column) {
             return fixed ? grows * numberIn((*s.last)[table.column(column)]) : std::max(s.lines.find(column)->second.at(x), 0.0);
         };
@@ -91,13 +98,15 @@ std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view meth
         w.per = (*s.last)[table.column("per")];
         w.calls = numberIn((*s.last)[table.column("calls")]);
         w.threads = fixed ? *s.threads.begin() : at("threads") * particles;
-        double operations = 0;
-        for (size_t k = 0; k < kGpuOps; ++k) operations += w.count[k] = at(kColumns[k]);
-        if (operations > 0) {
-            w.step8 = std::max(at("step8") / operations, 1.0);
-            w.step32 = std::max(at("step32") / operations, 1.0);
-            w.step64 = std::max(at("step64") / operations, 1.0);
-        }
+        for (size_t k = 0; k < kGpuOps; ++k) w.count[k] = at(kColumns[k]);
+        // In step over alone: of the largest world counted, in which more threads are at walls than in larger ones.
+        const double alone = sumOf(table, *s.last);
+        const auto ratio = [&, &s = s](const char* column) {
+            return alone > 0 ? std::max(numberIn((*s.last)[table.column(column)]) / alone, 1.0) : 1.0;
+        };
+        w.step8 = ratio("step8");
+        w.step32 = ratio("step32");
+        w.step64 = ratio("step64");
         w.longest = grows * s.longest;
         w.longestLoads = grows * s.longestLoads;
         w.sectors = at("sectors");

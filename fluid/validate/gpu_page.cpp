@@ -79,8 +79,8 @@ std::string dominating(const std::vector<GpuSpec>& gpus) {
 std::string errorsHere(const GpuModelRun& run) {
     std::string page =
         "## Error on the devices here\n\nTwo devices that are software, with rates measured by tiny kernels (`shaders/bench`) and not "
-        "fitted to the "
-        "result. Times are processor time over the number of threads, ms a substep; error: predicted over measured, less 1.\n\n"
+        "fitted to the result. Times are processor time over the number of threads, ms a substep; error: predicted over measured, less "
+        "1.\n\n"
         "| device | bandwidth, GB/s | arithmetic, 1e9/s | integers | roots | loads | rounds of a loop | dispatch, us |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const ExaminedGpu& g : run.gpus)
@@ -96,7 +96,7 @@ std::string errorsHere(const GpuModelRun& run) {
                                 percent(errorOf(r.predictedDrawMs, r.drawMs)));
     }
     page +=
-        "\nBy pass, of the largest size: the least of all substeps on the wall, and the error. Passes below 2 % of the substep are left "
+        "\nBy pass: shares of the time on the wall, scaled to the substep's or the picture's, and the error. Passes below 2 % are left "
         "out.\n\n"
         "| device | method | pass | measured | predicted | error |\n| --- | --- | --- | --- | --- | --- |\n";
     for (const SeriesRow& r : run.rows) {
@@ -126,7 +126,7 @@ std::string errorsThere(const std::vector<GpuSpec>& gpus) {
     const ReferenceRows table = rowsOf(gpuTables(), "measured");
     std::string page =
         "## Against a GPU\n\nFrames of [performance.md](performance.md), which the model was not fitted to, with the kernels of that "
-        "version (`assets/gpus/kernels_before.csv`).\n\n"
+        "version (`assets/gpus/kernels_before.csv`, counted with 1,024 particles).\n\n"
         "| GPU | backend | method | particles | measured, ms a frame | predicted | error |\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const std::vector<std::string_view>& row : table.rows) {
         const auto cell = [&](const char* column) { return row[table.column(column)]; };
@@ -152,11 +152,9 @@ std::string beforeAndAfter() {
     };
     std::string page =
         "## Pair loops, before and after\n\nThe sweeps over neighbours dominated every method. A GPU now first finds the neighbours within "
-        "the "
-        "support radius, a sixth of those in the cells, and computes the terms of these alone, with their images in one sweep (`FOR_PAIRS` "
-        "in "
-        "`shaders/fluid/grid/neighbors.h`). Counted with 1,024 particles, a thread; in step: if 32 threads take as long as the longest of "
-        "them.\n\n"
+        "the support radius, a sixth of those in the cells, and computes the terms of these alone (`FOR_PAIRS` in "
+        "`shaders/fluid/grid/neighbors.h`). Counted with 1,024 particles, a thread; in step: of 32 threads that go through the code "
+        "together, over 32. Times on the devices here are in [performance.md](performance.md#on-a-gpu).\n\n"
         "| kernel | operations, before | after | in step, before | after | longest thread, before | after |\n"
         "| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const std::vector<std::string_view>& b : before.rows)
@@ -175,8 +173,8 @@ std::string beforeAndAfter() {
 constexpr const char* kModel = R"(## The model
 
 Counted, on small worlds, by [tests/gpu_cost](../tests/gpu_cost/README.md): for each kernel operations by kind, loads and stores, the sectors of 32 bytes
-that a dispatch touches, the accesses of 32 threads together, the operations if all threads of a group of 8, 32 or 64 take as long as its longest,
-and those of the longest thread. For each drawing pass: invocations of its shaders, their reads of textures, bytes, and operations. Counts at three
+that a dispatch touches, the accesses of 32 threads together, the operations of groups of 8, 32 and 64 threads that go through the code in step, and
+those of the longest thread. For each drawing pass: invocations of its shaders, their reads of textures, bytes, and operations. Counts at three
 sizes are extended along the inverse edge of the water, as the share of particles at walls is.
 
 A dispatch takes the time of a launch, and the longest of these:
@@ -196,9 +194,11 @@ Figures of GPUs are published ones (`assets/gpus/gpus.csv`, with sources). Of a 
 - Boost clock, and nothing else on the GPU. A GPU that lowers its clock is slower in proportion.
 - Counts are of OpenCL C compiled by clang for Oclgrind; a driver's compiler may contract, unroll or spill otherwise.
 - No second cache: what misses the first is either in it or read once a dispatch.
-- Divergence inside a loop is taken as if the longest thread of a group did what each of the others does, too.
+- Threads in step wait for each other at the end of each branch and loop; GPUs may let them run apart. How much more they do together than alone is
+  that of the largest world counted, with more walls about it than a million particles have: large worlds are faster than predicted by that.
 - Substeps and iterations are the cpu's, of the first frames of a dam break. Queued iterations that a GPU skips cost a launch, and are not counted.
 - Operations of fragment shaders are those of the compiled text, times its counted reads over the reads in that text: loops of reads alone.
+- Occupancy is full, unless `kernels.csv` (column `waves`) says less.
 - Latencies of AMD and Intel are about right, not published by them.
 )";
 

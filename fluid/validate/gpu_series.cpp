@@ -14,6 +14,14 @@ namespace rivulet {
 
 namespace {
 
+// Of a device that is software, passes are measured on the wall, and other programs lengthen them: scales them to `ms` together.
+void scaleTo(double ms, std::map<std::string, double>& passes) {
+    double sum = 0;
+    for (const auto& [name, each] : passes) sum += each;
+    if (sum > 0)
+        for (auto& [name, each] : passes) each *= ms / sum;
+}
+
 // Draws a world three times; the fastest picture counts.
 Status drawSeries(const ExaminedGpu& gpu, const FluidWorld& world, SceneRenderer& renderer, const SceneFile& scene, SeriesRow& row) {
     const Bounds bounds{world.params().box.min, world.params().box.max};
@@ -34,6 +42,7 @@ Status drawSeries(const ExaminedGpu& gpu, const FluidWorld& world, SceneRenderer
             at->second = std::min(at->second, pass.ms);
         }
     }
+    if (gpu.device->info().software) scaleTo(row.drawMs, row.drawPasses);
     const FrameCost cost = predictPicture(gpu.model, row.particles);
     row.predictedDrawMs = cost.ms();
     for (const PassCost& pass : cost.passes) row.predictedDrawPasses[pass.name] = pass.ms;
@@ -85,7 +94,7 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
         device.poll();
         return world.lastSubsteps();
     };
-    for (int k = 0; k < 3; ++k) advance();  // compiles kernels; a GPU at first queues a solver's iterations generously
+    for (int k = 0; k < 8; ++k) advance();  // compiles kernels; a GPU at first queues iterations generously, and reports them late
     device.takeTimes();
     int steps = 0, calls = 0;
     double iterations = 0;
@@ -101,6 +110,7 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
         ++calls;
     }
     row.stepMs = 1000 * (deviceSeconds(device) - start) / steps;
+    if (device.info().software) scaleTo(row.stepMs, row.passes);
     row.iterations = iterations / steps;
     if (Status sound = stillWorks(device); !sound) return sound.error();
     const double substeps = static_cast<double>(steps) / calls;

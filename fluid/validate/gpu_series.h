@@ -31,7 +31,7 @@ struct SeriesRow {
     double frameMs = 0, predictedFrameMs = 0;                                 // of 1/60 s, with the substeps and iterations of frames.csv
     double iterations = 0;                                                    // of the pressure solver, in a substep
     double drawMs = 0, predictedDrawMs = 0;                                   // of a picture; 0: not drawn
-    std::map<std::string, double> passes = {}, predictedPasses = {};          // of a substep: the least of all
+    std::map<std::string, double> passes = {}, predictedPasses = {};          // of a substep: the least, scaled to stepMs if it is software
     std::map<std::string, double> drawPasses = {}, predictedDrawPasses = {};  // of a picture
 };
 

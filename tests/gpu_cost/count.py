@@ -6,6 +6,8 @@
 
     python3 tests/gpu_cost/count.py passes  [--build build/release]   what each drawing pass does: gpu_cost_passes, which it builds; minutes
 
+    python3 tests/gpu_cost/count.py waves                             fills the column `waves` of kernels.csv from tests/gpus/table.csv
+
 Needs the packages oclgrind, liboclgrind-dev and llvm-14-dev (kernels), glslang-tools and spirv-tools (passes). The scene is dam_break with default settings but for method and spacing.
 """
 import argparse
@@ -98,9 +100,19 @@ def count_kernels(program, to, spacings, methods):
                 print(f"{method}, {particles} particles: {substeps} substeps", flush=True)
     write(to / "kernels.csv", "What the kernels of dam_break do in a dispatch, a thread, means: counted in Oclgrind by tests/gpu_cost/count.py kernels.\n"
           "# per: calls are in a step, an iteration or a frame. waves: share of a GPU's waves that registers allow. step8, step32, step64: operations\n"
-          "# if all threads of a group take as long as its longest. longest: operations and loads of the longest thread of a dispatch. sectors:\n"
+          "# of a thread where so many go through the code in step. longest: operations and loads of the longest thread of a dispatch. sectors:\n"
           "# 32 bytes, of the accesses of 32 threads together, over 32. Bytes: read and written, each sector once a dispatch; group_bytes: once a\n"
           "# work group.", rows)
+
+
+def fill_waves(_program, to, *_):
+    """1 of a kernel that tests/gpus has not measured."""
+    path, waves = to / "kernels.csv", occupancy()
+    lines = path.read_text().splitlines(keepends=True)
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    for row in rows:
+        row["waves"] = f"{waves.get(row['kernel'], 1):.3g}"
+    write(path, "".join(line for line in lines if line.startswith("#"))[2:].rstrip("\n"), rows)
 
 
 def count_frames(program, to, *_):
@@ -189,14 +201,14 @@ def write(path, doc, rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("kernels", "frames", "passes"))
+    parser.add_argument("table", choices=("kernels", "frames", "passes", "waves"))
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--to", default=TABLES, type=pathlib.Path, help="folder of the table")
     parser.add_argument("--spacings", default=SPACINGS, type=float, nargs="+", help="of kernels, m: at least two for a prediction")
     parser.add_argument("--methods", default=METHODS, nargs="+", help="of kernels")
     arguments = parser.parse_args()
     program = arguments.build.resolve() / "bin/rivulet"
-    {"kernels": count_kernels, "frames": count_frames, "passes": count_passes}[arguments.table](program, arguments.to, arguments.spacings, arguments.methods)
+    {"kernels": count_kernels, "frames": count_frames, "passes": count_passes, "waves": fill_waves}[arguments.table](program, arguments.to, arguments.spacings, arguments.methods)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,12 @@
 // Arithmetic on a vector counts once for each component, and a * b + c, where the compiler may contract it, once. Operations that cost a
 // GPU nothing are not counted: moves between registers, which Oclgrind sees as loads and stores of private memory, phi nodes, casts of
 // pointers, and parts of vectors taken out or put in.
+#include <llvm/Analysis/LoopInfo.h>
+#include <llvm/IR/CFG.h>
+#include <llvm/IR/CallingConv.h>
 #include <llvm/IR/Constants.h>
 #include <llvm/IR/DerivedTypes.h>
+#include <llvm/IR/Dominators.h>
 #include <llvm/IR/Instructions.h>
 
 #include <algorithm>
@@ -51,7 +55,7 @@ struct Thread {
 struct Sums {
     double calls = 0, threads = 0, loadBytes = 0, storeBytes = 0, sectors = 0, groupBytes = 0, readBytes = 0, writtenBytes = 0;
     std::array<double, kClasses> count{};
-    std::array<double, kWidths.size()> inStep{};  // operations if every thread of a warp takes as long as its longest
+    std::array<double, kWidths.size()> inStep{};  // operations of threads that go through the code in step
     double longest = 0, longestLoads = 0;         // of the longest thread of each dispatch
 };
 
@@ -228,26 +232,49 @@ class Counter final : public oclgrind::Plugin {
         const auto [found, fresh] = costs_.try_emplace(i);
         if (fresh) {
             found->second = computeCost(i);
-            found->second.begins = i == &i->getParent()->front();
+            const llvm::Function* function = i->getFunction();
+            found->second.begins = i == &i->getParent()->front() && function->getCallingConv() == llvm::CallingConv::SPIR_KERNEL;
             if (found->second.begins) found->second.block = blockOf(i->getParent());
         }
         return found->second;
     }
 
-    // Blocks are numbered in the order of their function, and their operations summed.
+    // Blocks are numbered so that those of a loop come before all that follow it, and their operations summed.
     unsigned blockOf(const llvm::BasicBlock* block) {
         const auto known = blocks_.find(block);
         if (known != blocks_.end()) return known->second;
-        for (const llvm::BasicBlock& each : *block->getParent()) {
-            blocks_[&each] = static_cast<unsigned>(blockOperations_.size());
-            double sum = 0;
-            for (const llvm::Instruction& i : each) {
-                sum += computeCost(&i).count;
-                if (llvm::isa<llvm::LoadInst>(i) || llvm::isa<llvm::StoreInst>(i) || llvm::isa<llvm::AtomicRMWInst>(i)) sum += 1;
-            }
-            blockOperations_.push_back(sum);
+        auto& function = const_cast<llvm::Function&>(*block->getParent());
+        const llvm::DominatorTree dominators(function);
+        const llvm::LoopInfo loops(dominators);
+        std::vector<const llvm::BasicBlock*> order;  // post-order; from each block the ways out of a loop first
+        visit(&function.getEntryBlock(), loops, order);
+        for (auto each = order.rbegin(); each != order.rend(); ++each) {
+            blocks_[*each] = static_cast<unsigned>(blockOperations_.size());
+            blockOperations_.push_back(operationsOf(**each));
         }
         return blocks_.at(block);
+    }
+    // With those of functions that it calls, each block of theirs once.
+    static double operationsOf(const llvm::BasicBlock& block) {
+        double sum = 0;
+        for (const llvm::Instruction& i : block) {
+            sum += computeCost(&i).count;
+            if (llvm::isa<llvm::LoadInst>(i) || llvm::isa<llvm::StoreInst>(i) || llvm::isa<llvm::AtomicRMWInst>(i)) sum += 1;
+            const auto* call = llvm::dyn_cast<llvm::CallInst>(&i);
+            const llvm::Function* called = call != nullptr ? call->getCalledFunction() : nullptr;
+            if (called != nullptr && !called->isDeclaration())
+                for (const llvm::BasicBlock& each : *called) sum += operationsOf(each);
+        }
+        return sum;
+    }
+    void visit(const llvm::BasicBlock* block, const llvm::LoopInfo& loops, std::vector<const llvm::BasicBlock*>& order) {
+        if (!visited_.insert(block).second) return;
+        std::vector<const llvm::BasicBlock*> next(llvm::succ_begin(block), llvm::succ_end(block));
+        const llvm::Loop* loop = loops.getLoopFor(block);
+        std::stable_partition(next.begin(), next.end(),
+                              [&](const llvm::BasicBlock* each) { return loop != nullptr && !loop->contains(each); });
+        for (const llvm::BasicBlock* each : next) visit(each, loops, order);
+        order.push_back(block);
     }
     // The operations of threads that run in step: whatever of them is furthest behind goes on, with all that are at the same block, so that
     // threads wait for each other at the end of a loop (Fung et al. 2007 compare such policies).
@@ -317,6 +344,7 @@ class Counter final : public oclgrind::Plugin {
     double longestTime_ = 0;
     std::unordered_map<const llvm::Instruction*, Cost> costs_;
     std::unordered_map<const llvm::BasicBlock*, unsigned> blocks_;
+    std::unordered_set<const llvm::BasicBlock*> visited_;
     std::vector<double> blockOperations_;
     std::vector<size_t> at_;  // of each thread's blocks
     std::unordered_set<size_t> touched_, read_, written_;

@@ -98,9 +98,9 @@ FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {
 #else
 #define APART(a, b) ((a) - (b))
 #endif
-// FOR_SEEN of pair terms that are zero from the distance h on. `at`: the particle's position, `position`: the buffer of its neighbours'. A GPU
-// first finds which of up to 32 neighbours are within h, a sixth of those in the cells, and then computes the terms of these alone: all threads
-// of a warp go through the long part for a few neighbours, not for each that one of them has.
+// FOR_SEEN of pair terms that are zero from the distance h on. `at`: the particle's position, `position`: the buffer of its neighbours'.
+// A GPU first finds which of up to 32 neighbours are within h, a sixth of those in the cells, and then computes the terms of these alone:
+// all threads of a warp go through the long part for a few neighbours, not for each that one of them has.
 #undef FOR_PAIRS
 #undef FOR_ALL_PAIRS
 #undef END_PAIRS

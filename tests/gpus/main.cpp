@@ -25,6 +25,7 @@
 #include "engine/compute/kernel_source.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/render/host_surroundings.h"
 #include "fluid/render/water_renderer.h"
 #include "fluid/session/replay.h"
 #include "fluid/session/scene_renderer.h"
@@ -219,6 +220,10 @@ int listVariants(std::span<const std::string> scenes) {
     // Of a host's water those that no scene has: what they add to the others is the same for all.
     if (const auto water = WaterRenderer::create({}); !water) {
         fmt::print(stderr, "{}\n", water.error().message);
+        return kFailed;
+    }
+    if (const auto surroundings = SurroundingsMap::create(ShaderFiles::developer()); !surroundings) {
+        fmt::print(stderr, "{}\n", surroundings.error().message);
         return kFailed;
     }
     Names fragments;

@@ -8,7 +8,7 @@
 # runs them (clang, clang-tidy, format) is `ctest -L lint`, which .ci/run runs as well.
 set -u
 . "$(dirname "${BASH_SOURCE[0]}")/../third_party/setup.sh"
-sections=(run test)
+sections=(run test gpus)
 [ "${RIVULET_HOSTS:-}" = 1 ] && sections+=(hosts)
 install_packages "${sections[@]}" || exit 1
 arguments=()

@@ -56,7 +56,6 @@ FN bool reaches(GLOBAL(uint, skin) GLOBAL(vec4, basis) uint t, vec3 to, float cl
     w.triangle = t;
     w.b1 = 0.33333333f;
     w.b2 = 0.33333333f;
-    w.n = TRIANGLE_NORMAL(t);
     w.v = vec3(0.0f, 0.0f, 0.0f);
     w.gone = 0u;
     for (int k = 0; k < 4; ++k) {
@@ -64,7 +63,8 @@ FN bool reaches(GLOBAL(uint, skin) GLOBAL(vec4, basis) uint t, vec3 to, float cl
         vec3 d = to - x;
         float far = dot(d, d);
         if (far < close * close) return true;
-        vec3 way = d - w.n * dot(d, w.n);
+        vec3 n = TRIANGLE_NORMAL(w.triangle);
+        vec3 way = d - n * dot(d, n);
         float along = dot(way, way);
         if (along < 0.01f * far) return false;  // straight above or below
         // The distance itself, not its projection on this triangle: the walk continues over edges.

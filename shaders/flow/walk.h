@@ -5,7 +5,6 @@
 #define MOST_EDGES 4096 /* in a step: an end for ways that are no number */
 #define TRIANGLE_NORMAL(t) vec3(basis[5u * (t) + 1u].w, basis[5u * (t) + 2u].w, basis[5u * (t) + 3u].w)
 STRUCT(SkinWalk) {
-    vec3 n;  // the triangle's normal
     vec3 v;  // a vector that is transported along and rotated with the skin
     uint triangle;
     float b1;  // barycentric coordinates of corners 1 and 2
@@ -46,6 +45,7 @@ FN SkinWalk walked(GLOBAL(uint, skin) GLOBAL(vec4, basis) SkinWalk w, vec3 way) 
         w.b2 = w.b2 + r2 * go;
         rest = rest - go;
         if (edge == 3u) return w;
+        vec3 from = TRIANGLE_NORMAL(w.triangle);
         // Crosses the edge, and triangles without area, on which no distance is covered.
         for (int flat_ = 0; flat_ < 16; ++flat_) {
             float s = edge == 0u ? w.b1 : edge == 1u ? w.b2 : 1.0f - w.b1 - w.b2;
@@ -63,9 +63,8 @@ FN SkinWalk walked(GLOBAL(uint, skin) GLOBAL(vec4, basis) SkinWalk w, vec3 way) 
             if (basis[5u * w.triangle + 4u].w < 0.5f) {
                 u = u * (1.0f / max(sqrt(dot(u, u)), 1.0e-30f));
                 vec3 to = TRIANGLE_NORMAL(w.triangle);
-                way = unfolded(way, u, w.n, to);
-                w.v = unfolded(w.v, u, w.n, to);
-                w.n = to;
+                way = unfolded(way, u, from, to);
+                w.v = unfolded(w.v, u, from, to);
                 break;
             }
             // Leaves by the edge that is nearest to the point of entry.

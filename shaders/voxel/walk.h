@@ -19,11 +19,11 @@ FN bool setVoxelNear(GLOBAL(uint, surfaceBits) FieldParams f, vec3 p) {
     int x1 = TO_INT(floor(p.x + f.nudge));
     int y1 = TO_INT(floor(p.y + f.nudge));
     int z1 = TO_INT(floor(p.z + f.nudge));
+    bool any = false;
     for (int z = z0; z <= z1; ++z)
         for (int y = y0; y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x)
-                if (voxelSet(PASS(surfaceBits) f, x, y, z)) return true;
-    return false;
+            for (int x = x0; x <= x1; ++x) any = any || voxelSet(PASS(surfaceBits) f, x, y, z);
+    return any;
 }
 
 // From `a` to `b`, cell coordinates, within a million voxels of the grid. Returns the fraction of the way at which the first

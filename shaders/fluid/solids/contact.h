@@ -86,14 +86,17 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
             if (!(depthC > 0.0f)) w.normalC = vec3(0.0f, 0.0f, 0.0f);
             float fast = -min(min(dot(s.velocity, w.normalA), dot(s.velocity, w.normalB)), dot(s.velocity, w.normalC));
             float bounces = fast > f.restSpeed ? 1.0f : 0.0f;
-            vec3 ended = respondBeyond(stretch, w.normalA, depthA, w.surfaceA.x, w.surfaceA.y * bounces);
-            ended = respondBeyond(ended, w.normalB, depthB, w.surfaceB.x, w.surfaceB.y * bounces);
-            ended = respondBeyond(ended, w.normalC, depthC, w.surfaceC.x, w.surfaceC.y * bounces);
+            vec2 surface = surfaceOf(PASS(bandNormal) f, w.codeA);
+            vec3 ended = respondBeyond(stretch, w.normalA, depthA, surface.x, surface.y * bounces);
+            surface = surfaceOf(PASS(bandNormal) f, w.codeB);
+            ended = respondBeyond(ended, w.normalB, depthB, surface.x, surface.y * bounces);
+            surface = surfaceOf(PASS(bandNormal) f, w.codeC);
+            ended = respondBeyond(ended, w.normalC, depthC, surface.x, surface.y * bounces);
             vec3 change = ended - stretch;
             if (fast > 0.0f || dot(change, change) > 0.0f) {
                 s.touched = true;
-                rest = respondToAll(rest, w, bounces);
-                s.velocity = respondToAll(s.velocity, w, bounces);
+                rest = respondToAll(PASS(bandNormal) f, rest, w, bounces);
+                s.velocity = respondToAll(PASS(bandNormal) f, s.velocity, w, bounces);
             }
             // Still nearer than the contact distance, because of curvature or from the start. In a corner: out of each wall.
             if (w.corner) {

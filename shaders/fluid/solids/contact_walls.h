@@ -9,21 +9,11 @@ STRUCT(Walls) {
     float distanceA;  // m, from the point
     float distanceB;
     float distanceC;
-    vec2 surfaceA;  // friction, restitution
-    vec2 surfaceB;
-    vec2 surfaceC;
+    uint codeA;  // of a grid point on its side: see surfaceOf
+    uint codeB;
+    uint codeC;
     bool corner;
 };
-
-// Response to all walls, with restitution where `bounces` is 1; velocity that one response adds into another wall is removed in the next round.
-FN vec3 respondToAll(vec3 u, Walls w, float bounces) {
-    vec3 v = respond(u, w.normalA, w.surfaceA.x, w.surfaceA.y * bounces);
-    v = respond(v, w.normalB, w.surfaceB.x, w.surfaceB.y * bounces);
-    v = respond(v, w.normalC, w.surfaceC.x, w.surfaceC.y * bounces);
-    if (w.corner)
-        for (int k = 0; k < 4; ++k) v = respond(respond(respond(v, w.normalA, 0.0f, 0.0f), w.normalB, 0.0f, 0.0f), w.normalC, 0.0f, 0.0f);
-    return v;
-}
 
 // See packNormal in fluid/voxel/distance_band.h.
 FN vec3 unpackNormal(uint code) {
@@ -44,6 +34,19 @@ FN vec2 surfaceOf(GLOBAL(uint, bandNormal) FieldParams f, uint code) {
     return vec2(BITS_FLOAT(bandNormal[at]), BITS_FLOAT(bandNormal[at + 1u]));
 }
 
+// Response to all walls, with restitution where `bounces` is 1; velocity that one response adds into another wall is removed in the next round.
+FN vec3 respondToAll(GLOBAL(uint, bandNormal) FieldParams f, vec3 u, Walls w, float bounces) {
+    vec2 surface = surfaceOf(PASS(bandNormal) f, w.codeA);
+    vec3 v = respond(u, w.normalA, surface.x, surface.y * bounces);
+    surface = surfaceOf(PASS(bandNormal) f, w.codeB);
+    v = respond(v, w.normalB, surface.x, surface.y * bounces);
+    surface = surfaceOf(PASS(bandNormal) f, w.codeC);
+    v = respond(v, w.normalC, surface.x, surface.y * bounces);
+    if (w.corner)
+        for (int k = 0; k < 4; ++k) v = respond(respond(respond(v, w.normalA, 0.0f, 0.0f), w.normalB, 0.0f, 0.0f), w.normalC, 0.0f, 0.0f);
+    return v;
+}
+
 // Where walls face each other, the interpolated distance blends them: its gradient points between them, and a particle would follow a
 // rounded corner. The grid points of the cell separate the walls: each stores the direction to its nearest triangle, from which the wall is
 // extended as a plane. Around an outer edge such planes are nearer to the point than the mesh
@@ -56,9 +59,9 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
     w.distanceA = f.band;
     w.distanceB = f.band;
     w.distanceC = f.band;
-    w.surfaceA = vec2(0.0f, 0.0f);
-    w.surfaceB = w.surfaceA;
-    w.surfaceC = w.surfaceA;
+    w.codeA = 0u;
+    w.codeB = 0u;
+    w.codeC = 0u;
     vec3 g = toCells(f, p);
     if (!loneWall(here)) {
         int cx = clamp(TO_INT(floor(g.x)), 0, f.sizeX - 1);
@@ -79,18 +82,18 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
                 if (distance_ < w.distanceA) {
                     w.normalA = n;
                     w.distanceA = distance_;
-                    w.surfaceA = surfaceOf(PASS(bandNormal) f, code);
+                    w.codeA = code;
                 }
             } else if (dot(w.normalB, w.normalB) == 0.0f || dot(w.normalB, n) > 0.9f) {
                 if (distance_ < w.distanceB) {
                     w.normalB = n;
                     w.distanceB = distance_;
-                    w.surfaceB = surfaceOf(PASS(bandNormal) f, code);
+                    w.codeB = code;
                 }
             } else if (distance_ < w.distanceC) {
                 w.normalC = n;
                 w.distanceC = distance_;
-                w.surfaceC = surfaceOf(PASS(bandNormal) f, code);
+                w.codeC = code;
             }
         }
     }
@@ -101,7 +104,7 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
         w.normalC = w.normalB;
         w.normalA = fieldNormal(here);
         w.distanceA = here.distance;
-        w.surfaceA = surfaceOf(PASS(bandNormal) f, bandNormal[nearestPoint(f, g)]);
+        w.codeA = bandNormal[nearestPoint(f, g)];
     }
     return w;
 }

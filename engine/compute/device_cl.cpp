@@ -23,7 +23,6 @@ using cl::Program;
 using cl::Queue;
 using cl::stateOf;
 
-constexpr uint32_t kDefaultLocalSize = 64;
 constexpr size_t kParamSlots = 32;      // parameter blocks kept on the device
 constexpr uint32_t kFlushEvery = 16;    // dispatches between two flushes
 constexpr size_t kHarvestAbove = 1024;  // timed dispatches above which times are collected without takeTimes()
@@ -120,7 +119,7 @@ class ClDevice final : public Device {
     DiskCache cache_;
     size_t memoryLimit_;
     uint64_t failAfter_, eventFailsAfter_, dispatches_ = 0;
-    size_t maxLocalSize_;
+    size_t localSize_, maxLocalSize_;
     std::vector<Entry> kernels_;
     std::deque<ParamSlot> params_;  // oldest first
     std::deque<Upload> uploads_;    // in order: the front ends first
@@ -144,12 +143,13 @@ ClDevice::ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& 
       cache_(options.cache, log_),
       memoryLimit_(options.memoryLimit),
       failAfter_(options.failAfter),
-      eventFailsAfter_(options.eventFailsAfter) {
+      eventFailsAfter_(options.eventFailsAfter),
+      localSize_(options.localSize) {
     const std::string version = clPlatformText(chosen.platform, CL_PLATFORM_VERSION), driver = clDeviceText(device_, CL_DRIVER_VERSION);
     info_.name = chosen.name;
     info_.driver = fmt::format("{}, driver {}", version, driver);
     info_.software = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
-    info_.maxBufferBytes = clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    info_.maxBufferBytes = std::min<size_t>(clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE), options.mostBufferBytes);
     maxLocalSize_ = clDeviceValue<size_t>(device_, CL_DEVICE_MAX_WORK_GROUP_SIZE);
     options_ = "-cl-std=CL1.2";  // no fast-math, so that the backends agree up to rounding
     if (clDeviceValue<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
@@ -232,7 +232,7 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
     const auto known = std::find_if(kernels_.begin(), kernels_.end(), [&](const Entry& e) { return e.key == key; });
     if (known != kernels_.end()) return Kernel{static_cast<uint32_t>(known - kernels_.begin())};
     if (localSize == 0) {
-        localSize = static_cast<uint32_t>(std::min<size_t>(kDefaultLocalSize, maxLocalSize_));
+        localSize = static_cast<uint32_t>(std::min(localSize_, maxLocalSize_));
         sorted.push_back({"LOCAL_SIZE", std::to_string(localSize)});
     }
 

@@ -27,6 +27,9 @@ struct ClOptions {
     // which one is accepted but its event fails.
     size_t memoryLimit = SIZE_MAX;
     uint64_t failAfter = UINT64_MAX, eventFailsAfter = UINT64_MAX;
+    // For tests of smaller devices: threads of a work group, unless a kernel's define LOCAL_SIZE sets another number; bytes of a buffer.
+    uint32_t localSize = 64;
+    size_t mostBufferBytes = SIZE_MAX;
     const ClGlCalls* glCalls = nullptr;  // for tests: replaces the driver's functions; null: the driver's
 };
 

@@ -19,7 +19,6 @@
 namespace rivulet {
 namespace {
 
-constexpr uint32_t kDefaultLocalSize = 64;
 constexpr size_t kBlockPage = size_t{64} << 10U;  // bytes per page, at least
 // NVIDIA's driver 580 lets glNamedBufferSubData overtake dispatches that still read the buffer, whatever the barriers. So what is written
 // is copied by the GPU, in order, in parts of this size.
@@ -48,7 +47,7 @@ size_t roundedUp(size_t value, size_t step) { return (value + step - 1) / step *
 
 class GlDevice final : public Device {
   public:
-    GlDevice(const ShaderFiles& files, Log log);
+    GlDevice(const ShaderFiles& files, Log log, const GlOptions& options);
     ~GlDevice() override = default;
     Backend backend() const override { return Backend::gl; }
     const DeviceInfo& info() const override { return info_; }
@@ -111,7 +110,8 @@ class GlDevice final : public Device {
     ShaderFiles files_;
     Log log_;
     DeviceInfo info_;
-    size_t maxLocalSize_, maxGroups_, blockAlignment_;
+    uint32_t localSize_;
+    size_t maxLocalSize_, maxBindings_, maxGroups_, blockAlignment_;
     std::vector<Entry> kernels_;
     std::deque<Page> pages_, writes_;  // the oldest first; the last is being written
     std::vector<std::byte> lastBlock_;
@@ -123,18 +123,22 @@ class GlDevice final : public Device {
     size_t bytesAllocated_ = 0;
 };
 
-GlDevice::GlDevice(const ShaderFiles& files, Log log)
+size_t deviceLimit(GLenum which, size_t most) { return std::min(static_cast<size_t>(deviceLimit(which)), most); }
+
+GlDevice::GlDevice(const ShaderFiles& files, Log log, const GlOptions& options)
     : files_(files),
       log_(std::move(log)),
-      maxLocalSize_(static_cast<size_t>(deviceLimit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS))),
+      localSize_(options.localSize),
+      maxLocalSize_(deviceLimit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, SIZE_MAX)),
+      maxBindings_(deviceLimit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, options.mostBindings)),
       blockAlignment_(std::max<size_t>(static_cast<size_t>(deviceLimit(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT)), 16)) {
     GLint groups = 0;
     glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
-    maxGroups_ = static_cast<size_t>(std::max(groups, 65535));
+    maxGroups_ = std::min(static_cast<size_t>(std::max(groups, 65535)), options.mostGroups);
     info_.name = text(GL_RENDERER);
     info_.driver = text(GL_VERSION);
     info_.software = isSoftwareRenderer(info_.name);
-    info_.maxBufferBytes = static_cast<size_t>(deviceLimit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
+    info_.maxBufferBytes = deviceLimit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, options.mostBufferBytes);
 }
 
 void GlDevice::lose(std::string_view what) {
@@ -145,6 +149,19 @@ bool GlDevice::isLost() {
     if (health_.state != DeviceHealth::lost && gpu::contextLost())
         health_ = {DeviceHealth::lost, "lost its OpenGL context: the driver was restarted, or the GPU was removed"};
     return health_.state == DeviceHealth::lost;
+}
+
+size_t highestBinding(GLuint name) {
+    GLint blocks = 0;
+    glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
+    GLint highest = 0;
+    for (GLint k = 0; k < blocks; ++k) {
+        const GLenum property = GL_BUFFER_BINDING;
+        GLint binding = 0;
+        glGetProgramResourceiv(name, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(k), 1, &property, 1, nullptr, &binding);
+        highest = std::max(highest, binding);
+    }
+    return static_cast<size_t>(highest);
 }
 
 Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> defines) {
@@ -159,7 +176,7 @@ Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> d
     const auto known = std::find_if(kernels_.begin(), kernels_.end(), [&](const Entry& e) { return e.key == key; });
     if (known != kernels_.end()) return Kernel{static_cast<uint32_t>(known - kernels_.begin())};
     if (localSize == 0) {
-        localSize = kDefaultLocalSize;
+        localSize = localSize_;
         sorted.push_back({"LOCAL_SIZE", std::to_string(localSize)});
     }
     const std::string file = fmt::format("shaders/{}.kernel", path);
@@ -168,22 +185,12 @@ Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> d
                                   maxLocalSize_));
     Result<gpu::Program> program = gpu::Program::create(files_, {file}, sorted);
     if (!program) return program.error();
+    if (const size_t needed = highestBinding(program->name()); needed > maxBindings_)
+        return failed(
+            fmt::format("{} needs {} storage buffers, but {} allows {}; try --backend cpu", file, needed, info_.name, maxBindings_));
     kernels_.push_back({std::move(key), std::string(path), std::move(*program), localSize});
     kernels_.back().link();
     return Kernel{static_cast<uint32_t>(kernels_.size() - 1)};
-}
-
-size_t highestBinding(GLuint name) {
-    GLint blocks = 0;
-    glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
-    GLint highest = 0;
-    for (GLint k = 0; k < blocks; ++k) {
-        const GLenum property = GL_BUFFER_BINDING;
-        GLint binding = 0;
-        glGetProgramResourceiv(name, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(k), 1, &property, 1, nullptr, &binding);
-        highest = std::max(highest, binding);
-    }
-    return static_cast<size_t>(highest);
 }
 
 void GlDevice::Entry::link() {
@@ -387,7 +394,9 @@ std::vector<PassTime> GlDevice::takeTimes() {
 
 }  // namespace
 
-std::unique_ptr<Device> makeGlDevice(const ShaderFiles& files, Log log) { return std::make_unique<GlDevice>(files, std::move(log)); }
+std::unique_ptr<Device> makeGlDevice(const ShaderFiles& files, Log log, const GlOptions& options) {
+    return std::make_unique<GlDevice>(files, std::move(log), options);
+}
 
 void contextChanged(Device& gl) {
     ASSERT(gl.backend() == Backend::gl, "ask backend() first");

@@ -1,7 +1,9 @@
-// Prefetches the data of the drops that are processed next: they are in random order, and a thread would wait for memory.
+// Prefetches the data of the drops that are processed next: they are in random order, and a thread would wait for memory. On the CPU only: a
+// GPU has other threads to run meanwhile, and these loads would race with the threads of those drops.
 #if !defined(RIVULET_FETCH_H)
 #define RIVULET_FETCH_H
 FN void fetchDrops(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(vec4, motion) GLOBAL(uint, skin) GLOBAL(vec4, basis) uint i, uint count) {
+#if defined(__cplusplus)
     if (i + 8u < count) {
         uint slot = id[i + 8u];
         PREFETCH(drop[DROP_UINTS * slot]);
@@ -13,9 +15,11 @@ FN void fetchDrops(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(vec4, motion) GLOB
         PREFETCH(basis[5u * t]);
         PREFETCH(basis[5u * t + 4u]);
     }
+#endif
 }
 // Also the neighbours of a drop's triangle, and its film.
 FN void fetchBeside(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(uint, skin) GLOBAL(vec4, basis) GLOBAL(uint, film) uint i, uint count) {
+#if defined(__cplusplus)
     if (i + 2u >= count) return;
     uint t = SKIN_UINTS * (drop[DROP_UINTS * id[i + 2u] + DROP_TRIANGLE] & DROP_NUMBER);
     for (uint cell = 0u; cell < min(skin[t + 7u] * skin[t + 7u], 64u); cell += 16u) PREFETCH(film[skin[t + 6u] + cell]);
@@ -26,5 +30,6 @@ FN void fetchBeside(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(uint, skin) GLOBA
         PREFETCH(basis[5u * across]);
         PREFETCH(basis[5u * across + 4u]);
     }
+#endif
 }
 #endif

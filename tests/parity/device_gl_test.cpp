@@ -62,7 +62,7 @@ class DeviceGl : public GpuTest {
 TEST_F(DeviceGl, InfoNamesTheDevice) {
     EXPECT_EQ(device_->backend(), Backend::gl);
     EXPECT_EQ(device_->info().name, context_->renderer());
-    EXPECT_NE(device_->info().driver.find("4.5"), std::string::npos);
+    EXPECT_GE(device_->info().driver.substr(0, 3), "4.5");
     EXPECT_EQ(device_->info().software, context_->software());
     EXPECT_TRUE(isSoftwareRenderer("llvmpipe (LLVM 15.0.6, 256 bits)"));
     EXPECT_FALSE(isSoftwareRenderer("NVIDIA H200/PCIe/SSE2"));

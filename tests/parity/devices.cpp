@@ -5,17 +5,15 @@
 #include <cstdlib>
 
 #include "engine/app/context_egl.h"
-#include "engine/gpu/device_gl.h"
 
 namespace rivulet {
 
 namespace {
 
-Result<TestGpu> open(const std::string& name) {
-    const ShaderFiles files = ShaderFiles::developer();
+Result<TestGpu> open(const std::string& name, const TestGpuOptions& options) {
     TestGpu gpu;
     if (name == "cl") {
-        Result<std::unique_ptr<Device>> made = makeClDevice(files);
+        Result<std::unique_ptr<Device>> made = makeClDevice(options.files, {}, options.cl);
         if (!made) return made.error();
         gpu.device = std::move(*made);
         return gpu;
@@ -24,7 +22,7 @@ Result<TestGpu> open(const std::string& name) {
         Result<ContextEgl> context = ContextEgl::create();
         if (!context) return context.error();
         gpu.context = std::make_shared<ContextEgl>(std::move(*context));
-        gpu.device = makeGlDevice(files);
+        gpu.device = makeGlDevice(options.files, {}, options.gl);
         return gpu;
     }
     return failed("no device is called " + name);
@@ -32,8 +30,8 @@ Result<TestGpu> open(const std::string& name) {
 
 }  // namespace
 
-Result<TestGpu> makeTestGpu(const std::string& name) {
-    Result<TestGpu> gpu = open(name);
+Result<TestGpu> makeTestGpu(const std::string& name, const TestGpuOptions& options) {
+    Result<TestGpu> gpu = open(name, options);
     if (!gpu && std::getenv("RIVULET_TEST_DEVICES") != nullptr)
         ADD_FAILURE() << name << " must be here, and is not: " << gpu.error().message;
     return gpu;

@@ -8,6 +8,7 @@
 #include "engine/compute/device_cl.h"
 #include "engine/compute/device_cpu.h"
 #include "engine/compute/kernel_source.h"
+#include "engine/gpu/device_gl.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 
@@ -23,8 +24,13 @@ struct TestGpu {
     std::shared_ptr<void> context;  // gl: the OpenGL context
     std::unique_ptr<Device> device;
 };
+struct TestGpuOptions {
+    ShaderFiles files = ShaderFiles::developer();
+    GlOptions gl = {};
+    ClOptions cl = {};
+};
 // "cl" or "gl". If RIVULET_TEST_DEVICES is set, as by tests/run.sh, an absent device fails the test.
-Result<TestGpu> makeTestGpu(const std::string& name);
+Result<TestGpu> makeTestGpu(const std::string& name, const TestGpuOptions& options = {});
 
 // Positions of the existing particles, m; waits for the device.
 inline std::vector<vec3> positions(FluidWorld& world) {

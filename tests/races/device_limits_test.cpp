@@ -1,0 +1,98 @@
+// The limits that OpenGL and OpenCL guarantee, set on devices that allow more: work groups of 64 to 1,024, few groups in a dispatch, 8
+// storage buffers of a kernel, small buffers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/parity/devices.h"
+#include "tests/races/small_worlds.h"
+
+namespace rivulet::device_limits_test {
+namespace {
+
+races::Answer run(Device& device, std::string_view name) {
+    const auto& all = races::smallWorlds();
+    const auto world = std::ranges::find_if(all, [&](const auto& w) { return name == w.name; });
+    EXPECT_NE(world, all.end());
+    return world->run(device);
+}
+
+class DeviceLimits : public ::testing::TestWithParam<const char*> {
+  protected:
+    TestGpu open(const TestGpuOptions& options = {}) {
+        Result<TestGpu> gpu = makeTestGpu(GetParam(), options);
+        if (gpu) return std::move(*gpu);
+        [&] { GTEST_SKIP() << gpu.error().message; }();
+        return {};
+    }
+};
+
+// So no kernel depends on how many of its work items run at once.
+TEST_P(DeviceLimits, WorkGroupsOfAnySizeGiveTheSameResults) {
+    if (!races::full() && GetParam() == std::string("cl")) return;  // which compiles each again, for minutes
+    // One device after the other: a context of OpenGL is current until another one is made.
+    std::vector<races::Answer> plain;
+    for (const uint32_t size : {64U, 128U, 1024U}) {
+        if (size == 128 && !races::full()) continue;
+        TestGpuOptions options;
+        options.gl.localSize = options.cl.localSize = size;
+        const TestGpu gpu = open(options);
+        if (IsSkipped()) return;
+        std::vector<races::Answer> answers;
+        for (const char* world : {"dfsph", "voxels"}) answers.push_back(run(*gpu.device, world));
+        if (size == 64) plain = answers;
+        for (size_t k = 0; k < plain.size(); ++k) {
+            ASSERT_FALSE(plain[k].exact.empty());
+            EXPECT_EQ(answers[k].exact == plain[k].exact, true) << "world " << k << " in groups of " << size;
+        }
+    }
+}
+
+TEST_P(DeviceLimits, AWorldWithTooLargeBuffersIsRefusedInASentence) {
+    constexpr size_t kMost = size_t{1} << 20U;
+    TestGpuOptions options;
+    options.gl.mostBufferBytes = options.cl.mostBufferBytes = kMost;
+    const TestGpu gpu = open(options);
+    if (IsSkipped()) return;
+    EXPECT_EQ(gpu.device->info().maxBufferBytes, kMost);
+    const Result<Buffer> buffer = gpu.device->allocate(kMost + 1);
+    ASSERT_FALSE(buffer);
+    EXPECT_NE(buffer.error().message.find("fewer particles or coarser voxels"), std::string::npos) << buffer.error().message;
+    FluidParams p;
+    p.spacing = 0.01F;
+    p.blocks = {{.min = vec3(0.0F), .max = vec3(0.5F)}};
+    const auto world = FluidWorld::create(*gpu.device, p, {}, {});
+    ASSERT_FALSE(world) << "125,000 particles of 16 bytes";
+    EXPECT_NE(world.error().message.find("fewer particles"), std::string::npos) << world.error().message;
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, DeviceLimits, ::testing::Values("gl", "cl"), [](const auto& row) { return std::string(row.param); });
+
+TEST(DeviceLimitsGl, ADispatchInPiecesGivesTheSameResults) {
+    std::vector<races::Answer> answers[2];
+    for (const size_t pieces : {0U, 1U}) {
+        const Result<TestGpu> gpu = makeTestGpu("gl", {.gl = {.mostGroups = pieces == 1 ? 2 : SIZE_MAX}});
+        if (!gpu) GTEST_SKIP() << gpu.error().message;
+        for (const char* world : {"dfsph", "voxels", "linkedLists"}) answers[pieces].push_back(run(*gpu->device, world));
+    }
+    for (size_t k = 0; k < answers[0].size(); ++k) {
+        EXPECT_EQ(answers[0][k].exact == answers[1][k].exact, true) << "world " << k;
+        EXPECT_EQ(answers[0][k].near.size(), answers[1][k].near.size());
+    }
+}
+
+// All kernels but these fit the 8 storage buffers that OpenGL guarantees; where a device has no more, these are refused in a sentence.
+TEST(DeviceLimitsGl, AKernelOfMoreBuffersThanADeviceAllowsIsRefusedInASentence) {
+    Result<TestGpu> gpu = makeTestGpu("gl", {.gl = {.mostBindings = 8}});
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    for (const char* world : {"dfsph", "pbf", "wcsph", "thesis", "foam", "sleep", "wetness", "queries", "sources"})
+        run(*gpu->device, world);
+    const Result<Kernel> law = gpu->device->kernel("flow/law");
+    ASSERT_FALSE(law);
+    EXPECT_NE(law.error().message.find("flow/law.kernel needs 11 storage buffers, but "), std::string::npos) << law.error().message;
+    EXPECT_NE(law.error().message.find("allows 8; try --backend cpu"), std::string::npos) << law.error().message;
+}
+
+}  // namespace
+}  // namespace rivulet::device_limits_test

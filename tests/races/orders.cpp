@@ -1,0 +1,95 @@
+#include "tests/races/orders.h"
+
+#include <array>
+#include <utility>
+
+#include "engine/core/assert.h"
+#include "fluid/sim/world/cpu_kernels.h"
+
+namespace rivulet::races {
+namespace {
+
+// Of lang.h: the numbers of GLSL, then of OpenCL C, whose group is `group` of `groups`.
+struct Numbers {
+    std::string_view thread, local, group;
+};
+constexpr Numbers kGlsl = {"#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE)",
+                           "#define LOCAL_ID gl_LocalInvocationID.x\n", "#define GROUP_ID (gl_WorkGroupID.x + groupBase_)"};
+constexpr Numbers kOpencl = {"#define THREAD_ID ((uint)get_global_id(0))", "#define LOCAL_ID ((uint)get_local_id(0))",
+                             "#define GROUP_ID ((uint)get_group_id(0))"};
+
+Status replace(std::string& text, std::string_view from, const std::string& to) {
+    const size_t at = text.find(from);
+    if (at == std::string::npos) return failed("shaders/common/lang.h has no line " + std::string(from) + "; adapt tests/races/orders.cpp");
+    text.replace(at, from.size(), to);
+    return ok();
+}
+
+// Each is a permutation: of any number of groups, and of a work group's power of two.
+std::string groupIn(Order order, const std::string& group, const std::string& groups) {
+    if (order == Order::backwards) return "(" + groups + " - 1u - " + group + ")";
+    const std::string half = "((" + groups + " + 1u) / 2u)";  // the even ones first
+    return "(" + group + " < " + half + " ? 2u * " + group + " : 2u * (" + group + " - " + half + ") + 1u)";
+}
+std::string localIn(Order order, const std::string& local) {
+    return order == Order::backwards ? "(LOCAL_SIZE - 1u - " + local + ")" : "((" + local + " * 29u + 11u) % LOCAL_SIZE)";
+}
+
+uint32_t itemIn(Order order, uint32_t k, uint32_t count) {
+    if (order == Order::backwards) return count - 1 - k;
+    const uint32_t half = (count + 1) / 2;
+    return k < half ? 2 * k : 2 * (k - half) + 1;
+}
+
+// A CpuKernelRow is a function without state: so each row has a function of its own, which runs its kernel.
+constexpr size_t kMostRows = 1024;
+std::array<CpuKernelFn, kMostRows> ownRows;
+template <Order order, size_t row>
+void runIn(uint32_t begin, uint32_t end, const void* params, void* const* buffers) {
+    for (uint32_t k = 0; k < end - begin; ++k) {
+        const uint32_t item = begin + itemIn(order, k, end - begin);
+        ownRows[row](item, item + 1, params, buffers);
+    }
+}
+template <Order order, size_t... rows>
+constexpr std::array<CpuKernelFn, sizeof...(rows)> functionsOf(std::index_sequence<rows...>) {
+    return {runIn<order, rows>...};
+}
+constexpr auto kBackwards = functionsOf<Order::backwards>(std::make_index_sequence<kMostRows>());
+constexpr auto kInterleaved = functionsOf<Order::interleaved>(std::make_index_sequence<kMostRows>());
+
+}  // namespace
+
+Result<ShaderFiles> shadersIn(Order order) {
+    ShaderFiles files = ShaderFiles::developer();
+    Result<std::string> lang = files.load("shaders/common/lang.h");
+    if (!lang) return lang.error();
+    std::string text = *lang;
+    const std::string thread = "#define THREAD_ID (GROUP_ID * LOCAL_SIZE + LOCAL_ID)";
+    const std::string glslGroup = groupIn(order, "gl_WorkGroupID.x", "gl_NumWorkGroups.x"),
+                      openclGroup = groupIn(order, "(uint)get_group_id(0)", "(uint)get_num_groups(0)");
+    for (const Status& done :
+         {replace(text, kGlsl.thread, thread),
+          replace(text, kGlsl.local, "#define LOCAL_ID " + localIn(order, "gl_LocalInvocationID.x") + "\n"),
+          replace(text, kGlsl.group, "#define GROUP_ID (" + glslGroup + " + groupBase_)"), replace(text, kOpencl.thread, thread),
+          replace(text, kOpencl.local, "#define LOCAL_ID " + localIn(order, "(uint)get_local_id(0)")),
+          replace(text, kOpencl.group, "#define GROUP_ID " + openclGroup)})
+        if (!done) return done.error();
+    files.add("shaders/common/lang.h", std::move(text));
+    return files;
+}
+
+std::unique_ptr<CpuDevice> cpuIn(Order order) {
+    std::vector<CpuKernelRow> rows;
+    for (const CpuKernelRow& row : cpuKernels())
+        if (row.isa == Isa::generic) rows.push_back(row);  // results are the same with each
+    ASSERT(rows.size() <= kMostRows, "raise kMostRows");
+    for (size_t k = 0; k < rows.size(); ++k) {
+        ownRows[k] = rows[k].run;
+        rows[k].run = order == Order::backwards ? kBackwards[k] : kInterleaved[k];
+        rows[k].grain = UINT32_MAX;  // all work items in one call
+    }
+    return makeCpuDevice(rows, {.threads = 1, .isa = Isa::generic});
+}
+
+}  // namespace rivulet::races

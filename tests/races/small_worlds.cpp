@@ -1,0 +1,555 @@
+#include "tests/races/small_worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <string_view>
+
+#include "engine/scene/skin.h"
+#include "fluid/flow/flow_maps.h"
+#include "fluid/session/session.h"
+#include "fluid/sim/solids/body_shapes.h"
+#include "fluid/sim/world/host_particles.h"
+#include "fluid/voxel/voxelize_depth.h"
+#include "fluid/voxel/voxelize_solid.h"
+#include "fluid/voxel/voxelize_surface.h"
+#include "tests/physics/baked_mesh.h"
+#include "tests/physics/charted_skins.h"
+#include "tests/physics/loads.h"
+
+namespace rivulet::races {
+namespace {
+
+constexpr float kSpacing = 0.05F;
+constexpr double kStep = 1.0 / 240;
+
+// A column of 216 particles in a box, of which two frames are two steps.
+FluidParams column(const char* method) {
+    FluidParams p;
+    p.method = method;
+    p.spacing = kSpacing;
+    p.supportSpacings = 2.3F;
+    p.box.max = vec3(0.5F, 0.4F, 0.3F);
+    p.blocks = {{.min = vec3(0.0F), .max = vec3(0.3F), .velocity = vec3(0.5F, 0.0F, 0.1F)}};
+    p.soundSpeed = 15;
+    p.cfl = 0.8F;
+    p.pbf.minSubsteps = p.dfsph.minSubsteps = 1;
+    p.dfsph.maxIterations = 3;
+    return p;
+}
+
+std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& p, const Solids& solids = {}, const Sources& sources = {}) {
+    auto world = FluidWorld::create(device, p, solids, {}, sources);
+    EXPECT_TRUE(world) << (world ? "" : world.error().message);
+    return world ? std::move(*world) : nullptr;
+}
+
+// A step; what a GPU reports late arrives before the next one, so that runs do not differ by it.
+void step(FluidWorld& world, const FluidInputs& inputs = {}, double seconds = kStep) {
+    world.step(inputs, seconds);
+    world.device().finish();
+    world.device().poll();
+}
+
+void add(std::vector<float>& to, const vec4& v) { to.insert(to.end(), {v.x, v.y, v.z, v.w}); }
+void add(std::vector<float>& to, const vec3& v) { to.insert(to.end(), {v.x, v.y, v.z}); }
+
+// Every particle, by id.
+void addParticles(FluidWorld& world, std::vector<float>& to) {
+    const HostParticles all = readParticles(world);
+    std::vector<size_t> order(all.id.size());
+    for (size_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return all.id[a] < all.id[b]; });
+    to.push_back(static_cast<float>(order.size()));
+    for (const size_t k : order) {
+        add(to, all.position[k]);
+        add(to, vec3(all.velocity[k]));
+        for (const std::vector<vec4>& attribute : all.attributes) add(to, attribute[k]);
+    }
+    for (const size_t k : order)
+        if (!std::isfinite(all.position[k].x)) ADD_FAILURE() << "a particle is nowhere";
+}
+// Their number, mean places and mean squares.
+void addMeans(std::span<const vec4> all, std::vector<float>& to) {
+    dvec3 mean(0.0), square(0.0);
+    double count = 0;
+    for (const vec4& x : all) {
+        if (x.w < 0) continue;
+        mean += dvec3(x);
+        square += dvec3(x) * dvec3(x);
+        count += 1;
+    }
+    add(to, vec3(mean / std::max(count, 1.0)));
+    add(to, vec3(square / std::max(count, 1.0)));
+    to.push_back(static_cast<float>(0.001 * count));
+}
+void addMeans(FluidWorld& world, std::vector<float>& to) {
+    const HostParticles all = readParticles(world);
+    addMeans(all.position, to);
+    addMeans(all.velocity, to);
+}
+
+Answer particlesAfter(Device& device, const FluidParams& p, const Solids& solids = {}, int steps = 2) {
+    auto world = make(device, p, solids);
+    Answer a;
+    if (!world) return a;
+    for (int k = 0; k < steps; ++k) step(*world);
+    addParticles(*world, a.exact);
+    return a;
+}
+
+Answer wcsph(Device& device) {
+    FluidParams p = column("wcsph");
+    p.kernel = "cubic_spline";
+    p.forces.tension = p.forces.adhesion = 0.07F;
+    p.forces.airDrag = 0.5F;
+    p.forces.wind = vec3(1, 0, 0);
+    return particlesAfter(device, p);
+}
+Answer thesis(Device& device) {
+    FluidParams p = column("wcsph_thesis");
+    p.forces.normals = "thesis";
+    p.forces.thesisTension = 1;
+    return particlesAfter(device, p);
+}
+// Water that holds together under negative pressure, drawn between steps of a fixed length.
+Answer shifted(Device& device) {
+    FluidParams p = column("dfsph");
+    p.dfsph.negativePressure = true;
+    p.fixedStep = static_cast<float>(kStep);
+    Answer a;
+    auto world = make(device, p);
+    if (!world) return a;
+    for (int k = 0; k < 3; ++k) step(*world, {}, 1.3 * kStep);
+    addParticles(*world, a.exact);
+    const ParticleView view = world->particles();
+    EXPECT_NE(view.drawn, nullptr);
+    return a;
+}
+// The order within a list of a cell is that of the atomics: sums have other roundings.
+Answer linkedLists(Device& device) {
+    FluidParams p = column("wcsph_thesis");
+    p.grid = "linked_list";
+    Answer exact = particlesAfter(device, p), a;
+    a.near = exact.exact;
+    a.within = 1.0e-4;
+    return a;
+}
+Answer dfsph(Device& device) {
+    FluidParams p = column("dfsph");
+    p.collision.walls = "no-slip";
+    p.viscosity = 1.0e-3F;
+    p.forces.viscosity = "explicit";
+    return particlesAfter(device, p);
+}
+Answer implicitViscosity(Device& device) {
+    FluidParams p = column("dfsph");
+    p.viscosity = 0.05F;
+    p.forces.viscosity = "implicit";
+    p.collision.walls = "no-slip";
+    p.forces.viscosityTolerance = 1.0e-3F;
+    return particlesAfter(device, p);
+}
+Answer pbf(Device& device) {
+    FluidParams p = column("pbf");
+    p.ellipsoids = true;
+    p.forces.vorticity = 0.1F;
+    p.pbf.tolerance = 0.001F;
+    return particlesAfter(device, p);
+}
+Answer periodic(Device& device) {
+    FluidParams p = column("dfsph");
+    p.box.max = vec3(0.6F);
+    p.box.periodicX = p.box.periodicZ = true;
+    Answer all = particlesAfter(device, p);
+    p = column("wcsph");
+    p.box = {.max = vec3(0.6F), .periodicX = true, .periodicY = true, .periodicZ = true};
+    p.gravity = vec3(0.0F);
+    const Answer closed = particlesAfter(device, p);
+    all.exact.insert(all.exact.end(), closed.exact.begin(), closed.exact.end());
+    return all;
+}
+Answer liquids(Device& device) {
+    FluidParams p = column("dfsph");
+    p.blocks = {{.min = vec3(0.0F), .max = vec3(0.3F, 0.15F, 0.3F)}, {.min = vec3(0.0F, 0.15F, 0.0F), .max = vec3(0.3F), .liquid = "oil"}};
+    p.blocks[0].dye = vec3(1, 0, 0);
+    return particlesAfter(device, p);
+}
+
+// A slope, an obstacle, a paddle and, of which the loads are sums in any order, a ball; probes measure all.
+Answer solids(Device& device, const char* method, bool ball) {
+    FluidParams p = column(method);
+    p.viscosity = 1.0e-3F;
+    p.forces.viscosity = "explicit";
+    p.forces.adhesion = 0.2F;
+    p.collision.walls = "no-slip";
+    p.collision.friction = 0.1F;
+    const VoxelField obstacle = test::baked(test::makeBox(vec3(0.35F, -0.1F, 0.05F), vec3(0.45F, 0.1F, 0.2F)), 0.025F, kSpacing),
+                     paddle = test::baked(test::makeBox(vec3(-0.05F, -0.2F, -0.3F), vec3(0.05F, 0.2F, 0.3F)), 0.025F, kSpacing);
+    Solids s{
+        .field = &obstacle, .planes = {{vec3(0.0F, 0.02F, 0.1F), vec3(0.05F, 1.0F, 0.1F)}}, .rigid = {{&paddle, {vec3(0.4F, 0.3F, 0.1F)}}}};
+    if (ball) {
+        s.bodies.resize(1);
+        s.bodies[0].shape = sphereShape(2 * kSpacing, 400, kSpacing);
+        s.bodies[0].state.pose.position = vec3(0.15F, 0.28F, 0.15F);
+    }
+    p.probes = test::probesOfAll(s);
+    Answer a;
+    auto world = make(device, p, s);
+    if (!world) return a;
+    Pose at = s.rigid[0].pose;
+    for (int k = 0; k < 2; ++k) {
+        at.position.x -= 0.004F;
+        step(*world, {.poses = std::span(&at, 1)});
+    }
+    if (ball)
+        addMeans(*world, a.near);
+    else
+        addParticles(*world, a.exact);
+    for (const ProbeReading& reading : world->stats().loads.probes) add(a.near, 1.0e-3F * vec3(reading.impulse));
+    return a;
+}
+Answer walls(Device& device) { return solids(device, "dfsph", false); }
+Answer thesisWalk(Device& device) {
+    FluidParams p = column("wcsph_thesis");
+    p.collision.walk = "thesis";
+    const VoxelField obstacle = test::baked(test::makeBox(vec3(0.35F, -0.1F, 0.05F), vec3(0.45F, 0.1F, 0.2F)), 0.025F, kSpacing);
+    return particlesAfter(device, p, {.field = &obstacle});
+}
+Answer bodiesWcsph(Device& device) { return solids(device, "wcsph", true); }
+Answer bodiesPbf(Device& device) { return solids(device, "pbf", true); }
+Answer bodiesDfsph(Device& device) { return solids(device, "dfsph", true); }
+
+// Emitters, sinks, dry volumes, attributes, watched volumes, exchange.
+Answer sources(Device& device) {
+    FluidParams p = column("pbf");
+    p.attributes = {{.name = "team", .x = 1}, {.name = "age"}};
+    p.maxParticles = 600;
+    Sources s;
+    s.emitters.resize(2);
+    s.emitters[0].params = {.litresPerSecond = 40, .position = vec3(0.4F, 0.35F, 0.15F), .radius = 0.06F};
+    s.emitters[1].params = {.shape = "box", .litresPerSecond = 20, .position = vec3(0.4F, 0.1F, 0.1F), .size = vec3(0.1F), .liquid = "oil"};
+    p.blocks[0].dye = vec3(0.5F, 1, 1);
+    s.sinks.push_back({.shape = "sphere", .position = vec3(0.1F, 0.05F, 0.1F), .radius = 0.08F});
+    s.dry.push_back({.shape = "ellipsoid", .position = vec3(0.2F, 0.25F, 0.2F), .size = vec3(0.12F)});
+    s.expectedDeposit = 0.01;
+    Answer a;
+    auto world = make(device, p, {}, s);
+    if (!world) return a;
+    const Volume watched[] = {{1, Volume::box, vec3(0.2F), vec3(0.2F)}, {2, Volume::sphere, vec3(0.3F, 0.1F, 0.1F), {}, 0.1F}};
+    EXPECT_TRUE(world->setVolumes(watched));
+    for (int k = 0; k < 4; ++k) {
+        if (k == 1) {
+            EXPECT_TRUE(world->paint(0, watched[0], vec4(3.0F)));
+            const uint32_t ids[] = {7, 3, 100};
+            const vec4 values[] = {vec4(1.0F), vec4(2.0F), vec4(3.0F)};
+            EXPECT_TRUE(world->setAttribute(1, ids, values));
+            std::vector<uint32_t> slots;
+            for (const WorldParticle& particle : world->within({vec3(0.0F), vec3(0.15F)})) slots.push_back(particle.slot);
+            world->withdraw(slots);
+            world->deposit(vec3(0.45F, 0.2F, 0.2F), vec3(0, -1, 0), 0.0004);
+        }
+        step(*world);
+    }
+    addMeans(*world, a.near);
+    for (const VolumeCount& count : world->volumes()) a.near.push_back(0.001F * static_cast<float>(count.inside));
+    a.within = 0.01;
+    return a;
+}
+Answer foam(Device& device) {
+    FluidParams p = column("pbf");
+    p.foam.most = 2000;
+    p.foam.trappedAir = p.foam.waveCrest = 20000;
+    p.foam.airFrom = p.foam.crestFrom = p.foam.speedFrom = 0.0F;
+    p.foam.airTo = p.foam.crestTo = p.foam.speedTo = 0.05F;
+    Answer a;
+    auto world = make(device, p);
+    if (!world) return a;
+    for (int k = 0; k < 4; ++k) step(*world);
+    addParticles(*world, a.exact);
+    const ParticleView view = world->particles();
+    std::vector<vec4> cloud = device.readAll<vec4>(*view.foam, view.foamSlots);
+    std::erase_if(cloud, [](const vec4& x) { return !(x.w > 0); });
+    EXPECT_GT(cloud.size(), 50U);
+    addMeans(cloud, a.near);
+    a.within = 0.05;  // the random numbers of a foam particle are those of its slot
+    return a;
+}
+Answer sleep(Device& device) {
+    Answer a;
+    for (const char* method : {"pbf", "dfsph", "wcsph"}) {
+        FluidParams p = column(method);
+        p.sleep = {.on = true, .speed = 1, .after = 0.5F};
+        p.blocks[0].velocity = vec3(0.0F);
+        p.blocks[0].max = vec3(0.5F, 0.2F, 0.3F);
+        auto world = make(device, p);
+        if (!world) return a;
+        for (int k = 0; k < 6; ++k) step(*world, {}, 1.0 / 60);
+        addParticles(*world, a.exact);
+        a.exact.push_back(static_cast<float>(world->stats().asleep));
+    }
+    return a;
+}
+Answer wetness(Device& device) {
+    FluidParams p = column("pbf");
+    p.wetness = {.on = true, .dries = 1};
+    const VoxelField pillar = test::baked(test::makeBox(vec3(-0.06F, -0.12F, -0.06F), vec3(0.06F, 0.12F, 0.06F)), 0.025F, kSpacing);
+    Pose pose{vec3(0.25F, 0.2F, 0.15F)};
+    Answer a;
+    auto world = make(device, p, {.field = &pillar, .rigid = {{&pillar, pose}}});
+    if (!world) return a;
+    for (int k = 0; k < 3; ++k) {
+        pose.position.y += 0.01F;
+        step(*world, {.poses = std::span(&pose, 1)});
+    }
+    addParticles(*world, a.exact);
+    const WetnessView wet = world->wetness();
+    const std::vector<float> values = device.readAll<float>(*wet.values, wet.surface->points.size());
+    a.exact.insert(a.exact.end(), values.begin(), values.end());
+    return a;
+}
+Answer queries(Device& device) {
+    Answer a;
+    for (const char* grid : {"sorted", "linked_list"}) {
+        if (device.backend() == Backend::cpu && grid != std::string("sorted")) continue;
+        FluidParams p = column(grid == std::string("sorted") ? "pbf" : "wcsph_thesis");
+        p.grid = grid;
+        p.ellipsoids = grid == std::string("sorted");
+        auto world = make(device, p);
+        if (!world) return a;
+        step(*world);
+        std::vector<vec3> places;
+        std::vector<FluidRay> rays;
+        for (int k = 0; k < 12; ++k) {
+            places.emplace_back(0.04F * static_cast<float>(k), 0.03F * static_cast<float>(k), 0.02F * static_cast<float>(k));
+            rays.push_back({vec3(0.25F, 0.4F, 0.15F), places.back() - vec3(0.25F, 0.4F, 0.15F)});
+        }
+        std::vector<float>& to = grid == std::string("sorted") ? a.exact : a.near;
+        const auto samples = world->sample(places);
+        EXPECT_TRUE(samples);
+        for (const FluidSample& s : *samples) {
+            to.push_back(s.density);
+            add(to, s.velocity);
+        }
+        const auto hits = world->cast(rays);
+        EXPECT_TRUE(hits);
+        for (const FluidHit& h : *hits) to.push_back(h.hit ? h.distance : -1.0F);
+    }
+    return a;
+}
+
+void addBits(const std::vector<uint8_t>& bits, std::vector<float>& to) {
+    for (const uint8_t byte : bits) to.push_back(static_cast<float>(byte));
+}
+Answer voxels(Device& device) {
+    Answer a;
+    for (const test::Mesh& mesh : {test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 1.0F, 6), test::makeJumble(1, 24)}) {
+        const MeshView view = mesh.view();
+        VoxelGrid surface = test::gridAround(mesh, 12), solid = surface;
+        const Status onSurface = voxelizeSurface(device, GridTriangles(std::span(&view, 1), surface), surface),
+                     inside = voxelizeSolid(device, cleanMesh(std::span(&view, 1)), solid);
+        EXPECT_TRUE(onSurface) << (onSurface ? "" : onSurface.error().message);
+        EXPECT_TRUE(inside) << (inside ? "" : inside.error().message);
+        const Result<DepthVoxels> depth = voxelizeDepth(device, std::span(&view, 1), test::gridAround(mesh, 12), {});
+        EXPECT_TRUE(depth) << (depth ? "" : depth.error().message);
+        addBits(surface.bits, a.exact);
+        addBits(solid.bits, a.exact);
+        if (depth) addBits(depth->surface.bits, a.exact);
+    }
+    return a;
+}
+
+// A ball whose halves two bones turn, with a morph.
+Answer skin(Device& device) {
+    ModelPart part;
+    part.name = "ball";
+    const test::Skin ball = test::cubeBall(1.0F, 4);
+    part.mesh.positions = ball.positions;
+    part.mesh.indices = ball.indices;
+    part.bones = {{0, mat4(1.0F)}, {0, mat4(1.0F)}};
+    MorphTarget wide{"wide", {}, {}};
+    for (uint32_t i = 0; i < ball.positions.size(); ++i) {
+        wide.vertices.push_back(i);
+        wide.offsets.push_back(0.3F * ball.positions[i]);
+        part.grips.push_back({{0, 1, 0, 0}, {0.4F, 0.6F, 0, 0}});
+    }
+    part.morphs = {wide};
+    Answer a;
+    Result<Deformer> made = Deformer::create(device, part);
+    EXPECT_TRUE(made) << (made ? "" : made.error().message);
+    if (!made) return a;
+    mat4 moved(1.0F);
+    moved[3] = vec4(0.1F, 0.2F, 0.0F, 1.0F);
+    const float weights[] = {0.5F};
+    const mat4 bones[] = {mat4(1.0F), moved};
+    made->run(weights, bones);
+    for (const Buffer* buffer : {&made->positions(), &made->normals()})
+        for (const vec4& v : device.readAll<vec4>(*buffer, made->vertices())) add(a.exact, v);
+    return a;
+}
+
+// The drops of a flow, whose ids are slots: by what is theirs.
+void addDrops(const SurfaceFlow& flow, Answer& a) {
+    std::vector<vec4> drops;
+    for (const SkinDrop& d : flow.drops()) drops.emplace_back(20.0F * d.position, static_cast<float>(d.volume * 1e9));
+    dvec3 middle(0.0);
+    double sum = 0, square = 0;
+    for (const vec4& d : drops) {
+        middle += dvec3(d) * double{d.w};
+        sum += double{d.w};
+        square += double{d.w} * double{d.w};
+    }
+    EXPECT_FALSE(drops.empty());
+    add(a.near, vec3(middle / std::max(sum, 1.0e-9)));
+    a.near.push_back(static_cast<float>(0.1 * sum));
+    a.near.push_back(static_cast<float>(0.01 * square));
+    const SurfaceFlow::Ledger ledger = flow.ledger();
+    EXPECT_EQ(ledger.added, ledger.drops + ledger.film + ledger.left + ledger.evaporated + ledger.refused);
+    a.near.push_back(static_cast<float>(1.0e-8 * static_cast<double>(ledger.film)));
+    a.near.push_back(static_cast<float>(1.0e-8 * static_cast<double>(ledger.left)));
+    a.within = 0.05;  // two drops paint a cell, or merge: the order decides whose volume it is
+}
+Answer flow(Device& device) {
+    Answer a;
+    const test::Skin skin = test::cubeBall(0.03F, 6);
+    Result<FlowMesh> mesh = makeFlowMesh(skin.view());
+    EXPECT_TRUE(mesh);
+    const std::vector<vec2> uvs = cornerUvs(*mesh, skin.view());
+    SurfaceFlowParams p;
+    p.capacity = 256;
+    p.filmCell = 0.002F;
+    SkinBrim brim;
+    for (int k = 0; k < 4; ++k) {
+        const vec3 x = 0.03F * glm::normalize(vec3(1, 0.1F, -0.3F + 0.2F * static_cast<float>(k)));
+        brim.places.push_back(nearestPoint(*mesh, x));
+        brim.spills.push_back(nearestPoint(*mesh, x - vec3(0, 0.004F, 0)));
+    }
+    brim.picolitres = 9000000;
+    Result<SurfaceFlow> made = SurfaceFlow::create(device, std::move(*mesh), p, std::span(&brim, 1));
+    EXPECT_TRUE(made) << (made ? "" : made.error().message);
+    if (!made) return a;
+    Result<FlowMaps> maps = FlowMaps::create(*made, uvs, 32);
+    EXPECT_TRUE(maps) << (maps ? "" : maps.error().message);
+    if (!maps) return a;
+    for (const vec3& x :
+         {vec3(1, 1.1F, 0.2F), vec3(1, 1.0F, 0.3F), vec3(0.2F, 1, 1.3F), vec3(-1, 2, 0.3F), vec3(1, 0, 1), vec3(0, -1, 0.1F)})
+        made->add(nearestPoint(made->mesh(), 0.03F * glm::normalize(x)), 17000000, vec3(0, -0.3F, 0));
+    for (int k = 0; k < 12; ++k)
+        made->add(nearestPoint(made->mesh(), 0.03F * glm::normalize(vec3(-1, 0.3F, 0.05F * static_cast<float>(k)))), 3000000, vec3(0.0F),
+                  true);
+    std::vector<vec3> places(made->mesh().rest.size() == 0 ? 0 : skin.positions.size());
+    for (int k = 0; k < 5; ++k) {
+        for (size_t i = 0; i < places.size(); ++i) places[i] = skin.positions[i] * (1.0F + 0.01F * static_cast<float>(k));
+        if (k == 4) places.clear();  // the skin stands still
+        EXPECT_TRUE(made->step({.wind = vec3(1, 0, 0), .positions = places}, 1.0 / 60));
+        device.finish();
+        device.poll();
+        maps->draw(*made);
+    }
+    addDrops(*made, a);
+    const std::vector<uint32_t> words = device.readAll<uint32_t>(maps->texels(), maps->texels().bytes() / 4);
+    EXPECT_TRUE(std::ranges::any_of(words, [](uint32_t w) { return w != 0; }));
+    return a;
+}
+Answer thesisFlow(Device& device) {
+    Answer a;
+    const Shape cone = coneShape(0.05F, 0.03F, 0.1F, 16, 8);
+    Result<FlowMesh> mesh = makeFlowMesh(cone.view());
+    EXPECT_TRUE(mesh);
+    const std::vector<vec2> uvs = cornerUvs(*mesh, cone.view());
+    SurfaceFlowParams p;
+    p.capacity = 256;
+    Result<SurfaceFlow> made = SurfaceFlow::createThesis(device, std::move(*mesh), uvs, p, {});
+    EXPECT_TRUE(made) << (made ? "" : made.error().message);
+    if (!made) return a;
+    for (int k = 0; k < 6; ++k) {
+        for (const double at : {0.9 + 0.004 * k, 0.93 + 0.003 * k, 1.5})
+            made->add(nearestPoint(made->mesh(), vec3(dvec3(0.04 * std::cos(at), 0.09, 0.04 * std::sin(at)))), 900000 + 40000 * (k % 7));
+        EXPECT_TRUE(made->step({.wind = vec3(1, 0, 0)}, 1.0 / 60));
+        device.finish();
+        device.poll();
+    }
+    addDrops(*made, a);
+    return a;
+}
+
+// A scene of assets/scenes, made coarse.
+Answer scene(Device& device, const char* name, const std::vector<std::string>& settings, int frames) {
+    Answer a;
+    auto file = loadScene(name, settings);
+    EXPECT_TRUE(file) << (file ? "" : file.error().message);
+    if (!file) return a;
+    auto session = Session::create(*file, device, {});
+    EXPECT_TRUE(session) << (session ? "" : session.error().message);
+    if (!session) return a;
+    for (int k = 0; k < frames; ++k) {
+        (*session)->step(1.0 / 60, true);
+        device.poll();
+    }
+    addMeans((*session)->world(), a.near);
+    if (!(*session)->flows().empty()) {
+        const SkinFlows::Ledger ledger = (*session)->flows().ledger();
+        for (const double v : {ledger.onSurface, ledger.inAir, ledger.drained}) a.near.push_back(static_cast<float>(1.0e5 * v));
+        EXPECT_LT(std::abs(ledger.error), 1.0e-9);
+    }
+    a.within = 0.01;
+    return a;
+}
+Answer sheet(Device& device) {
+    return scene(device, "waving_sheet", {"fluid.spacing=0.1", "colliders.0.resolution=12", "fluid.pbf.minSubsteps=1"}, 2);
+}
+Answer rain(Device& device) {
+    return scene(device, "window_rain", {"flow.0.mapSize=32", "flow.0.liquid.capacity=512", "flow.0.liquid.filmCell=0.006"}, 3);
+}
+
+std::string_view fromEnvironment(const char* name) {
+    const char* text = std::getenv(name);
+    return text != nullptr ? text : "";
+}
+
+}  // namespace
+
+bool full() { return fromEnvironment("RIVULET_RACES") == "full"; }
+bool someChosen() { return !fromEnvironment("RIVULET_WORLDS").empty(); }
+bool chosen(const SmallWorld& world) {
+    std::istringstream words{std::string(fromEnvironment("RIVULET_WORLDS"))};
+    for (std::string word; words >> word;)
+        if (word == world.name) return true;
+    return !someChosen();
+}
+
+const std::vector<SmallWorld>& smallWorlds() {
+    static const std::vector<SmallWorld> worlds = {
+        {"wcsph", wcsph},
+        {"thesis", thesis},
+        {"linkedLists", linkedLists, false},
+        {"dfsph", dfsph},
+        {"implicitViscosity", implicitViscosity},
+        {"pbf", pbf},
+        {"shifted", shifted},
+        {"periodic", periodic},
+        {"liquids", liquids},
+        {"walls", walls},
+        {"thesisWalk", thesisWalk},
+        {"bodiesWcsph", bodiesWcsph},
+        {"bodiesPbf", bodiesPbf},
+        {"bodiesDfsph", bodiesDfsph},
+        {"sources", sources},
+        {"foam", foam},
+        {"sleep", sleep},
+        {"wetness", wetness},
+        {"queries", queries},
+        {"voxels", voxels},
+        {"skin", skin},
+        {"flow", flow},
+        {"thesisFlow", thesisFlow},
+        {"sheet", sheet},
+        {"rain", rain},
+    };
+    return worlds;
+}
+
+}  // namespace rivulet::races

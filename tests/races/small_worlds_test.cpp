@@ -1,0 +1,67 @@
+// The small worlds on each device: what they run is counted. Under oclgrind (run.sh) races, reads out of bounds and uninitialised values
+// are found.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "tests/parity/devices.h"
+#include "tests/races/counting_device.h"
+#include "tests/races/small_worlds.h"
+
+namespace rivulet::small_worlds_test {
+namespace {
+
+// Not run by a small world. map_tiles is the cpu's form of map_quads.
+const std::set<std::string> kMissing = {"flow/map_tiles",
+                                        "fluid/grid/bounds",
+                                        "fluid/grid/cell_of",
+                                        "fluid/sleep/sleep_disturb",
+                                        "fluid/sleep/sleep_drawn",
+                                        "fluid/sources/forget",
+                                        "fluid/surface/ellipsoids_free",
+                                        "fluid/surface/foam_drawn"};
+
+class SmallWorlds : public ::testing::TestWithParam<const char*> {};
+
+// Minutes: for RIVULET_RACES=full, as tests/races/run.sh sets it.
+TEST_P(SmallWorlds, RunTheKernelsOfAGpu) {
+    if (!races::full()) return;
+    TestGpuOptions options;
+    options.cl.cache = "";  // the key of the cache does not name oclgrind's options
+    Result<TestGpu> gpu = makeTestGpu(GetParam(), options);
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    CountingDevice device(*gpu->device);
+    for (const races::SmallWorld& world : races::smallWorlds()) {
+        if (!races::chosen(world)) continue;
+        SCOPED_TRACE(world.name);
+        std::printf("world %s\n", world.name);
+        std::fflush(stdout);
+        const races::Answer answer = world.run(device);
+        EXPECT_GT(answer.exact.size() + answer.near.size(), 4U);
+    }
+    EXPECT_EQ(gpu->device->health().state, DeviceHealth::works) << gpu->device->health().why;
+    std::set<std::string> kernels;
+    size_t dispatches = 0, items = 0;
+    const auto ran = device.ran();
+    for (const auto& [variant, count] : ran) {
+        kernels.insert(variant.substr(0, variant.find(';')));
+        dispatches += count.dispatches;
+        items += count.items;
+    }
+    std::printf("%s: %zu kernels in %zu variants, %zu dispatches of %zu work items\n", gpu->device->info().name.c_str(), kernels.size(),
+                ran.size(), dispatches, items);
+    if (races::someChosen()) return;
+    const std::filesystem::path shaders = std::filesystem::path(RIVULET_SOURCE_DIR) / "shaders";
+    for (const auto& file : std::filesystem::recursive_directory_iterator(shaders)) {
+        if (file.path().extension() != ".kernel") continue;
+        const std::string path = std::filesystem::relative(file.path(), shaders).replace_extension().string();
+        EXPECT_NE(kernels.contains(path), kMissing.contains(path)) << path << " is run by no small world, or need no longer be in kMissing";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, SmallWorlds, ::testing::Values("gl", "cl"), [](const auto& row) { return std::string(row.param); });
+
+}  // namespace
+}  // namespace rivulet::small_worlds_test

@@ -27,11 +27,11 @@ COLUMNS = ["kernel", "variant", "stage", "compiler", "device", "registers", "spi
 DEVICES = {"radv": {"POLARIS10": 8, "NAVI21": 32, "GFX1100": 32},
            "amdgcn": {"gfx900": 10, "gfx1030": 16},
            "nvptx": {"sm_61": ""},
-           "igc": {"skl": 32, "dg2": 32}}
+           "igc": {"skl": 32}}
 MORE = {"radv": {"TONGA": 10, "VEGA10": 10, "NAVI10": 40, "NAVI23": 32},
         "amdgcn": {"gfx803": 10, "gfx90a": 8},
         "nvptx": {"sm_86": ""},
-        "igc": {"icllp": 32, "tgllp": 32}}
+        "igc": {"dg2": 32, "tgllp": 32}}
 # Whose version decides what a compiler makes of a text.
 PACKAGES = {"radv": ["mesa-vulkan-drivers", "glslang-tools"], "amdgcn": ["clang", "libclc-14"], "nvptx": ["clang", "libclc-14"],
             "igc": ["intel-opencl-icd", "libigc1", "libopencl-clang14"]}
@@ -165,7 +165,7 @@ def igc(build, shader, device, most):
     def number(pattern):
         found = re.search(pattern, info)
         return int(found[1]) if found else 0
-    spill = number(r"usage: +spill_fill_space\n +size: +(\d+)")
+    spill = number(r"usage: +(?:spill_fill|single)_space\n +size: +(\d+)")
     return shader.row("compute", "igc", device, registers=number(r"grf_count: +(\d+)"), spilled=spill,
                       scratch_bytes=spill + number(r"usage: +private_space\n +size: +(\d+)"), waves=number(r"simd_size: +(\d+)"), most_waves=most,
                       instructions="", latency="")

@@ -48,7 +48,7 @@ std::map<std::string, size_t> waiting(const GlCalls& calls) {
 // bodies are moved by the host: their loads are read in each substep.
 TEST(Waits, FramesWaitForWhatTheTableNamesAlone) {
     Result<ContextEgl> context = ContextEgl::create({});
-    if (!context && mayLackOpenGl()) GTEST_SKIP() << context.error().message;
+    if (!context && testing::mayLackOpenGl()) GTEST_SKIP() << context.error().message;
     ASSERT_TRUE(context) << context.error().message;
     ASSERT_TRUE(gpu::load(find));
     const ShaderFiles files = ShaderFiles::developer();

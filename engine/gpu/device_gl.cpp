@@ -298,7 +298,7 @@ void GlDevice::readLater(const Buffer& from, size_t bytes, std::function<void(st
 
 void GlDevice::poll() {
     if (isLost()) pendingReads_.clear();  // nothing was copied
-    // A frame's steps begin with poll(): they may write buffers that shaders of the last picture have read.
+    // A frame's steps begin with poll(): they may write buffers that a host's own shaders have read.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     // Reads that a callback starts are left to the next poll().
     for (size_t left = pendingReads_.size(); left > 0 && pendingReads_.front().copied.passed(); --left) {

@@ -463,7 +463,9 @@ Status FrameGraph::execute() {
     if (lacksMemory && contextLost()) return failed(kContextLost);
     if (lacksMemory) return noMemory("there is not enough memory to draw the picture: make it smaller, or use fewer particles");
     // Makes shader writes visible to all later commands, here or in the host.
-    if (std::any_of(hazards.begin(), hazards.end(), [](const auto& h) { return h.second.written; })) glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    // Kernels may write next what these passes have read as storage buffers.
+    const bool written = std::any_of(hazards.begin(), hazards.end(), [](const auto& h) { return h.second.written; });
+    glMemoryBarrier(written ? GL_ALL_BARRIER_BITS : GL_SHADER_STORAGE_BARRIER_BIT);
     return ok();
 }
 

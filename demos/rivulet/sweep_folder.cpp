@@ -119,7 +119,7 @@ Status SweepFolder::prepare(const Sweep& sweep, std::string_view text, int threa
     return write(sweep, text, threads, origin);
 }
 
-// Of a folder that is prepared: that it is the sweep's, whose tasks may be more by now.
+// Checks that a prepared folder belongs to this sweep. The sweep may have more tasks than when the folder was prepared.
 Status SweepFolder::adopt(const Sweep& sweep, std::string_view text, int threads) const {
     const std::string kept = file("sweep.json");
     const Result<std::string> before = readFile(kept);

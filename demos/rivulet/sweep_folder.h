@@ -49,7 +49,7 @@ class SweepFolder {
     Result<Descriptor> lock(size_t task, bool wait) const;
     // Whether another process runs a task; leaves no lock.
     bool isHeld(size_t task) const;
-    // Removes the lock of a task that has ended: nobody needs it any more.
+    // Removes the lock of a task that has ended, which is no longer needed.
     void removeLock(size_t task) const;
 
     // Adds the tasks that have ended to results.csv and removes those without a folder; `again` is read again. The bytes depend on

@@ -138,7 +138,7 @@ std::vector<Define> definesOf(std::string_view text) {
     return defines;
 }
 
-// The file whose text, with these defines in front, is this one.
+// Finds the shader file that gives this text with these defines. An empty name: none does.
 std::string fileOf(const ShaderFiles& files, const Names& among, const std::string& text, const std::vector<Define>& defines) {
     for (const std::string& name : among) {
         const Result<KernelSource> source = files.flatten("shaders/" + name, defines, Dialect::glsl, kGlsl);

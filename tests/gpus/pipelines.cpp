@@ -36,7 +36,7 @@ struct Instruction {
     size_t words = 0;
 };
 
-// A module whose descriptors are numbered again: OpenGL counts uniform blocks, buffers and samplers separately, Vulkan does not.
+// Gives the descriptors of a module new numbers: OpenGL counts uniform blocks, buffers and samplers separately, Vulkan counts them together.
 struct Module {
     std::vector<uint32_t> code;
     std::vector<VkDescriptorSetLayoutBinding> bindings;

@@ -32,7 +32,7 @@ MORE = {"radv": {"TONGA": 10, "VEGA10": 10, "NAVI10": 40, "NAVI23": 32},
         "amdgcn": {"gfx803": 10, "gfx90a": 8},
         "nvptx": {"sm_86": ""},
         "igc": {"dg2": 32, "tgllp": 32}}
-# Whose version decides what a compiler makes of a text.
+# The figures of a compiler depend on the versions of these packages.
 PACKAGES = {"radv": ["mesa-vulkan-drivers", "glslang-tools"], "amdgcn": ["clang", "libclc-14"], "nvptx": ["clang", "libclc-14"],
             "igc": ["intel-opencl-icd", "libigc1", "libopencl-clang14"]}
 PROGRAMS = {"glslangValidator": "glslang-tools", "spirv-val": "spirv-tools", "clang": "clang", "ocloc": "intel-opencl-icd"}

@@ -66,7 +66,7 @@ class Owned:
 
 
     def let_go(self) -> None:
-        """release(), where nobody can call it again: later, if its OpenGL context is in use on another thread."""
+        """As release(), for destructors: if the OpenGL context is in use on another thread, it is released later."""
         try:
             self.release()
         except Error:

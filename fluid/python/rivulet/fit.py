@@ -464,7 +464,7 @@ class Fit:
     def plot(self, path: Path, label: str = "", unit: str = "") -> None:
         """Writes a picture (PNG, or what the ending of `path` says): the measured curve with the best run, and the residual over each parameter,
         with the interval shaded. label, unit: of the curve's axis. Needs Matplotlib."""
-        from matplotlib.figure import Figure  # without pyplot, whose open figures and back end are the user's
+        from matplotlib.figure import Figure  # not pyplot: its open figures and its backend belong to the user
         figure = Figure(figsize=(5.2 + 3.8 * len(self._ranges), 4.2), dpi=110, layout="constrained")
         axes = figure.subplots(1, 1 + len(self._ranges))
         axes[0].plot(self.times, self.values, color="#1769aa", linewidth=2, label=", ".join(f"{n} = {v:.3g}" for n, v in self.best.items()))

@@ -36,7 +36,7 @@ struct Instruction {
     size_t words = 0;
 };
 
-// Gives the descriptors of a module new numbers: OpenGL counts uniform blocks, buffers and samplers separately, Vulkan counts them together.
+// Gives the descriptors of a module new numbers: OpenGL counts each kind of binding separately, Vulkan counts all together.
 struct Module {
     std::vector<uint32_t> code;
     std::vector<VkDescriptorSetLayoutBinding> bindings;

@@ -112,6 +112,7 @@ typedef float4 real4;
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))
 #define ANY_LANE(condition) (condition)
 #define NEIGHBOR_TYPE uint  // see fluid/grid/neighbors.h
+#define NEIGHBORS_KEPT(b, RO, RW) RW(b, Neighbors, NEIGHBOR_TYPE, neighbors)
 #define LOAD(b, i) b[i]
 #define LOAD3(b, i) b[i].xyz
 #define LOADX(b, i) b[i].x

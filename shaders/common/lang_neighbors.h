@@ -3,6 +3,7 @@
 #pragma once
 
 #define NEIGHBOR_TYPE NeighborLists
+#define NEIGHBORS_KEPT(b, RO, RW) RO(b, Neighbors, NEIGHBOR_TYPE, neighbors)
 #define SELF(i) const Group& i = neighbors->groups[THREAD_ID]
 #define SELF_SAMPLE(i) const Group& i = neighbors->samples[THREAD_ID]
 #define FOR_NEIGHBORS(i, home, j)                          \

@@ -9,6 +9,7 @@
 #include "engine/compute/device_cpu.h"
 #include "engine/core/assert.h"
 #include "fluid/sim/kernels/cpu_grid.h"
+#include "shaders/fluid/grid/kept_pairs.h"
 #include "shaders/fluid/grid/linked_list.h"
 #include "shaders/fluid/grid/scan_params.h"
 
@@ -121,7 +122,9 @@ Status NeighborGrid::Impl::allocateCells() {
     Allocator take{*device};
     const size_t sorted = totalCells();
     const size_t counts = sorted + 4 + asleepCells();
-    Buffer starts = take(counts * sizeof(uint32_t)), held, lanes;
+    const bool keeps = !onCpu() && !traits.repeats && !glm::any(traits.periodic);
+    const size_t kept = keeps ? size_t{KEPT_ROWS} * KEPT_WORDS * count : 0;
+    Buffer starts = take((counts + kept) * sizeof(uint32_t)), held, lanes;
     if (onCpu()) {
         chunks = static_cast<uint32_t>(std::clamp(static_cast<CpuDevice*>(device)->threads(), 1, 16));
         held = take(chunks * (counts - 1) * sizeof(uint32_t));

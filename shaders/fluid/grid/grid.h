@@ -2,6 +2,7 @@
 // Particles are sorted by cell: first those of the fluid, then body samples in cells of their own, then, from cell totalCells on,
 // samples outside the grid (+ 0), lost particles (+ 1: outside, NaN or infinite), free slots (+ 2), and at + 3 the count of all these. With
 // fluid.sleep the sleeping particles follow (velocity.w negative), in cells of their own, the first of them at totalCells + 3.
+// Behind all these entries of cellStart a GPU keeps which neighbours are within reach: see neighbors.h.
 #if !defined(RIVULET_GRID_H)
 #define RIVULET_GRID_H
 #if defined(REPEATS)

@@ -3,6 +3,7 @@
 // with LINKED_LIST the lists of the 27 cells. (On the CPU, lang_neighbors.h defines the same macros over a neighbour list for each group
 // of 8.) Needs PARAMS of StepParams and a buffer RO(1, Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart or the lists.
 // `home`: the particle's position when the grid was built. j includes the particle itself.
+#include "shaders/fluid/grid/kept_pairs.h"
 #include "shaders/fluid/grid/linked_list.h"
 #if !defined(FOR_NEIGHBORS)
 #define SELF(i)         \
@@ -100,7 +101,10 @@ FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {
 #endif
 // FOR_SEEN of pair terms that are zero from the distance h on. `at`: the particle's position, `position`: the buffer of its neighbours'.
 // A GPU first finds which of up to 32 neighbours are within h, a sixth of those in the cells, and then computes the terms of these alone:
-// all threads of a warp go through the long part for a few neighbours, not for each that one of them has.
+// all threads of a warp go through the long part for a few neighbours, not for each that one of them has. A bit says that a neighbour is
+// within h. FOR_ALL_PAIRS, the first sweep of a step, keeps the bits of the first 64 neighbours in each row behind the entries of cellStart,
+// and later sweeps, those for images and further iterations included, load them. FOR_ALL_PAIRS needs NEIGHBORS_KEPT in place of the row
+// RO(1, Neighbors, ..). PAIR_REACH: of the bits, over h; more than 1 if particles move between sweeps.
 #undef FOR_PAIRS
 #undef FOR_ALL_PAIRS
 #undef END_PAIRS
@@ -114,18 +118,47 @@ FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {
 #define FOR_NEIGHBORS(i, home, j) \
     ROWS_(home)                   \
     for (uint j = begin_; j < end_; ++j) {
-#define FOR_PAIRS(i, home, at, position, j)                               \
-    ROWS_(home)                                                           \
-    for (uint first_ = begin_; first_ < end_; first_ += 32u) {            \
-        uint many_ = min(end_ - first_, 32u);                             \
-        uint bits_ = 0u;                                                  \
-        for (uint b_ = 0u; b_ < many_; ++b_) {                            \
-            real3 d_ = APART(at, LOAD3(position, first_ + b_));           \
-            bits_ |= (dot(d_, d_) < PARAMS.h * PARAMS.h ? 1u : 0u) << b_; \
-        }                                                                 \
-        for (; bits_ != 0u; bits_ &= bits_ - 1u) {                        \
+#if !defined(PAIR_REACH)
+#define PAIR_REACH 1.0f
+#endif
+#define FIND_PAIRS_(at, position)                                                               \
+    for (uint b_ = 0u; b_ < many_; ++b_) {                                                      \
+        real3 d_ = APART(at, LOAD3(position, first_ + b_));                                     \
+        bits_ |= (dot(d_, d_) < PAIR_REACH * PARAMS.h * (PAIR_REACH * PARAMS.h) ? 1u : 0u) << b_; \
+    }
+#if defined(PERIODIC)  // rows are single cells, and there may be 27 of them: nothing is kept
+#define PAIR_BITS_(i, at, position) FIND_PAIRS_(at, position)
+#define ALL_PAIR_BITS_(i, at, position) FIND_PAIRS_(at, position)
+#else
+#define KEPT_AT_(i)                                                                                                \
+    bool keeps_ = row_ < KEPT_ROWS && first_ - begin_ < 32u * KEPT_WORDS;                                          \
+    uint kept_ = KEPT_FROM(PARAMS) + (TO_UINT(row_) * KEPT_WORDS + (first_ - begin_) / 32u) * PARAMS.count + (i);
+#define PAIR_BITS_(i, at, position) \
+    KEPT_AT_(i)                     \
+    if (keeps_) {                   \
+        bits_ = neighbors[kept_];   \
+    } else {                        \
+        FIND_PAIRS_(at, position)   \
+    }
+#define ALL_PAIR_BITS_(i, at, position)                           \
+    KEPT_AT_(i)                                                   \
+    if (keeps_ && (IMAGE != 0 || PARAMS.iteration > 0u)) {        \
+        bits_ = neighbors[kept_];                                 \
+    } else {                                                      \
+        FIND_PAIRS_(at, position)                                 \
+        if (keeps_) neighbors[kept_] = bits_;                     \
+    }
+#endif
+#define PAIRS_(i, home, j, bits)                              \
+    ROWS_(home)                                               \
+    for (uint first_ = begin_; first_ < end_; first_ += 32u) { \
+        uint many_ = min(end_ - first_, 32u);                 \
+        uint bits_ = 0u;                                      \
+        bits                                                  \
+        for (; bits_ != 0u; bits_ &= bits_ - 1u) {            \
             uint j = first_ + LOWEST_BIT(bits_);
-#define FOR_ALL_PAIRS(i, home, at, position, j) FOR_PAIRS(i, home, at, position, j)
+#define FOR_PAIRS(i, home, at, position, j) PAIRS_(i, home, j, PAIR_BITS_(i, at, position))
+#define FOR_ALL_PAIRS(i, home, at, position, j) PAIRS_(i, home, j, ALL_PAIR_BITS_(i, at, position))
 #define END_PAIRS \
     }             \
     END_NEIGHBORS

@@ -69,6 +69,9 @@ Json::Value jsonOf(const ExaminedGpu& e) {
     r["loads"] = e.rates.loads;
     r["rounds"] = e.rates.rounds;
     r["dispatchMs"] = e.rates.dispatchMs;
+    r["fragments"] = e.rates.fragments;
+    r["filteredReads"] = e.rates.filtered;
+    r["texelFetches"] = e.rates.fetches;
     return v;
 }
 

@@ -205,6 +205,11 @@ GpuSpec measuredGpu(const std::string& name, const DeviceRates& rates, int step)
     g.seconds = {arithmetic, 1 / rates.special, integer, branch, integer, load, load, load, load, load};
     g.bandwidth = rates.bandwidth;
     g.launch = rates.dispatchMs / 1000;
+    if (rates.fragments > 0) {
+        g.fragmentSeconds = 1 / rates.fragments;
+        g.filteredSeconds = 1 / rates.filtered;
+        g.fetchSeconds = 1 / rates.fetches;
+    }
     return g;
 }
 
@@ -262,14 +267,16 @@ FrameCost predictPicture(const GpuSpec& gpu, double particles) {
         if (number("particles") != at) continue;
         const double vertices = number("vertices") * particles / at, fragments = number("fragments");
         const double operations = fragments * number("operations") + vertices * number("vertex_operations");
-        const double reads = fragments * number("reads") + vertices * number("vertex_reads");
-        const double load = gpu.seconds[static_cast<size_t>(GpuOp::load)], arithmetic = gpu.seconds[static_cast<size_t>(GpuOp::arithmetic)];
+        const double fetches = fragments * number("fetches") + vertices * number("vertex_fetches");
+        const double reads = fragments * number("reads") + vertices * number("vertex_reads");  // fetches among them
+        const double arithmetic = gpu.seconds[static_cast<size_t>(GpuOp::arithmetic)];
+        const double inTurn = fragments * gpu.fragmentSeconds + (reads - fetches) * gpu.filteredSeconds + fetches * gpu.fetchSeconds;
         const double bytes = number("read_bytes") + number("written_bytes");
         const struct {
             double seconds;
             const char* bound;
         } limits[] = {
-            {operations * arithmetic + (gpu.texels > 0 ? 0 : reads * load), "operations"},
+            {operations * arithmetic + inTurn, "operations"},
             {gpu.texels > 0 ? reads / gpu.texels : 0, "cache"},
             {bytes / gpu.bandwidth, "memory"},
             {gpu.pixels > 0 ? fragments / gpu.pixels : 0, "pixels"},

@@ -81,12 +81,17 @@ std::string errorsHere(const GpuModelRun& run) {
         "## Error on the devices here\n\nTwo devices that are software, with rates measured by tiny kernels (`shaders/bench`) and not "
         "fitted to the result. Times are processor time over the number of threads, ms a substep; error: predicted over measured, less "
         "1.\n\n"
-        "| device | bandwidth, GB/s | arithmetic, 1e9/s | integers | roots | loads | rounds of a loop | dispatch, us |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
-    for (const ExaminedGpu& g : run.gpus)
-        page += fmt::format("| {} ({}) | {:.3g} | {:.3g} | {:.3g} | {:.3g} | {:.3g} | {:.3g} | {:.3g} |\n", g.name,
-                            backendName(g.device->backend()), g.rates.bandwidth / 1e9, g.rates.arithmetic / 1e9, g.rates.integer / 1e9,
-                            g.rates.special / 1e9, g.rates.loads / 1e9, g.rates.rounds / 1e9, 1000 * g.rates.dispatchMs);
+        "| device | bandwidth, GB/s | arithmetic, 1e9/s | integers | roots | loads | rounds of a loop | dispatch, us | fragments | "
+        "filtered "
+        "reads | texels |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const ExaminedGpu& g : run.gpus) {
+        page += fmt::format("| {} ({}) |", g.name, backendName(g.device->backend()));
+        const DeviceRates& r = g.rates;
+        for (const double each : {r.bandwidth / 1e9, r.arithmetic / 1e9, r.integer / 1e9, r.special / 1e9, r.loads / 1e9, r.rounds / 1e9,
+                                  1000 * r.dispatchMs, r.fragments / 1e9, r.filtered / 1e9, r.fetches / 1e9})
+            page += each > 0 ? fmt::format(" {:.3g} |", each) : std::string(" |");
+        page += "\n";
+    }
     page += "\n| device | method | particles | measured | predicted | error |\n| --- | --- | --- | --- | --- | --- |\n";
     for (const SeriesRow& r : run.rows) {
         page += fmt::format("| {} | {} | {} | {:.3g} | {:.3g} | {} |\n", r.device, r.method, r.particles, r.stepMs, r.predictedStepMs,
@@ -152,8 +157,9 @@ std::string beforeAndAfter() {
     };
     std::string page =
         "## Pair loops, before and after\n\nThe sweeps over neighbours dominated every method. A GPU now first finds the neighbours within "
-        "the support radius, a sixth of those in the cells, and computes the terms of these alone (`FOR_PAIRS` in "
-        "`shaders/fluid/grid/neighbors.h`). Counted with 1,024 particles, a thread; in step: of 32 threads that go through the code "
+        "the support radius, a sixth of those in the cells, and computes the terms of these alone. The first sweep of a step keeps a bit "
+        "for each of them, 72 bytes a particle, and later sweeps find nothing again (`FOR_PAIRS` in `shaders/fluid/grid/neighbors.h`). "
+        "Counted with 1,024 particles, a thread, the mean of all calls in a step; in step: of 32 threads that go through the code "
         "together, over 32. Times on the devices here are in [performance.md](performance.md#on-a-gpu).\n\n"
         "| kernel | operations, before | after | in step, before | after | longest thread, before | after |\n"
         "| --- | --- | --- | --- | --- | --- | --- |\n";
@@ -187,7 +193,8 @@ A dispatch takes the time of a launch, and the longest of these:
 | waits | operations and loads of all threads one after the other, with their latencies, over the threads that the GPU holds at once |
 | longest thread | the same of the longest thread alone |
 
-Figures of GPUs are published ones (`assets/gpus/gpus.csv`, with sources). Of a device that is software, each kind of operation has its measured rate.
+Figures of GPUs are published ones (`assets/gpus/gpus.csv`, with sources). Of a device that is software, each kind of operation has its measured rate; a
+drawing pass takes the sum of its operations, written fragments, and filtered and fetched reads.
 
 ## Limits of the model
 

@@ -95,6 +95,8 @@ Result<DeviceRates> measureRates(Device& device) {
     // A load comes with one addition of floats and two of integers.
     rates.loads = 1 / std::max(load.operation - 1 / rates.arithmetic - 2 / rates.integer, 0.1 * load.operation);
     rates.rounds = 1 / std::max(arithmetic.perRound - 8 * arithmetic.operation, 0.1 * arithmetic.perRound);
+    if (device.backend() == Backend::gl)
+        if (Status drawn = measureDrawing(device, rates); !drawn) return drawn.error();
     rates.seconds = deviceSeconds(device) - start;
     return rates;
 }

@@ -15,6 +15,9 @@ struct DeviceRates {
     double loads = 0;       // vec4/s, from a few elements that every cache holds
     double rounds = 0;      // rounds of a loop/s: its count, comparison and branch
     double dispatchMs = 0;  // ms of a dispatch of one work group
+    double fragments = 0;   // fragments/s of a target of 16-bit floats, of a shader that does nothing; gl alone, otherwise 0
+    double filtered = 0;    // reads/s of a texture between its texels, four channels of 16 bits; gl alone
+    double fetches = 0;     // reads/s of a texel of one channel; gl alone
     double seconds = 0;     // that the measurement took
 };
 
@@ -24,5 +27,8 @@ double deviceSeconds(const Device& device);
 // Takes less than a second on a GPU, a few seconds on a device that is software. gl: its context must be current. Error: a kernel does not
 // compile, or memory is exhausted (failed); the device is cpu, which has other kernels (badInput).
 Result<DeviceRates> measureRates(Device& device);
+// What a device gl draws: fragments, filtered, fetches. Its context must be current. Error (failed): a shader does not compile, or memory
+// is exhausted.
+Status measureDrawing(Device& device, DeviceRates& rates);
 
 }  // namespace rivulet

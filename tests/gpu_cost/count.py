@@ -177,17 +177,20 @@ def count_passes(program, to, *_):
             for row in csv.DictReader(io.StringIO((folder / "passes.csv").read_text())):
                 invocations = {"vert": float(row["vertices"]), "frag": float(row["fragments"])}
                 reads = {"vert": float(row.pop("vertex_reads")), "frag": float(row.pop("reads"))}
+                fetches = {"vert": float(row.pop("vertex_fetches")), "frag": float(row.pop("fetches"))}
                 out = {"particles": particles, **row}
-                for stage, operations_column, reads_column in (("frag", "operations", "reads"), ("vert", "vertex_operations", "vertex_reads")):
+                for stage, before in (("frag", ""), ("vert", "vertex_")):
                     shader = folder / f"{row['pass']}.{stage}"
                     each, inside = operations_of(shader.read_text(), stage, folder) if shader.exists() else (0, 0)
                     counted = reads[stage] / invocations[stage] if invocations[stage] > 0 else 0
-                    out[reads_column] = f"{counted:.4g}"
-                    out[operations_column] = f"{each * max(1.0, counted / inside if inside else 1.0):.4g}"
+                    out[before + "reads"] = f"{counted:.4g}"
+                    out[before + "fetches"] = f"{fetches[stage] / invocations[stage] if invocations[stage] > 0 else 0:.4g}"
+                    out[before + "operations"] = f"{each * max(1.0, counted / inside if inside else 1.0):.4g}"
                 rows.append(out)
             print(f"{particles} particles", flush=True)
     write(to / "passes.csv", "What the passes of a picture of dam_break do, 1920x1080, fine, with pbf: counted by tests/gpu_cost/count.py passes. Bytes: whole textures\n"
-          "# and buffers, once for each pass that declares them. operations and reads (of textures): of a fragment; of a vertex.", rows)
+          "# and buffers, once for each pass that declares them. operations, reads (of textures) and fetches (of texels) among\n"
+          "# them: of a fragment; of a vertex.", rows)
 
 
 def write(path, doc, rows):

@@ -27,19 +27,21 @@
 namespace rivulet {
 namespace {
 
+constexpr int kCounts = 6;
 constexpr GLuint kReadsBinding = 7;  // no drawing shader has a buffer there
 // Put after the first line of a shader: functions of the same names that count. A macro is not replaced inside itself.
-// counts: reads of vertex and fragment shaders, then invocations.
+// counts: reads of vertex and fragment shaders, then invocations, then fetches of texels among the reads.
 constexpr const char* kCountReads = R"(
 layout(std430, binding = 7) buffer Counted { uint counted_[]; };
 #define COUNTED_(T, F, A, B) T F##_counted A { atomicAdd(counted_[COUNTED_STAGE], 1u); return F B; }
+#define FETCHED_(T, A, B) T texelFetch_counted A { atomicAdd(counted_[COUNTED_STAGE], 1u); atomicAdd(counted_[COUNTED_STAGE + 4], 1u); return texelFetch B; }
 COUNTED_(vec4, texture, (sampler2D s, vec2 p), (s, p))
 COUNTED_(vec4, texture, (samplerCube s, vec3 p), (s, p))
 COUNTED_(vec4, textureLod, (sampler2D s, vec2 p, float l), (s, p, l))
 COUNTED_(vec4, textureLod, (samplerCube s, vec3 p, float l), (s, p, l))
-COUNTED_(vec4, texelFetch, (sampler2D s, ivec2 p, int l), (s, p, l))
-COUNTED_(vec4, texelFetch, (samplerBuffer s, int p), (s, p))
-COUNTED_(uvec4, texelFetch, (usamplerBuffer s, int p), (s, p))
+FETCHED_(vec4, (sampler2D s, ivec2 p, int l), (s, p, l))
+FETCHED_(vec4, (samplerBuffer s, int p), (s, p))
+FETCHED_(uvec4, (usamplerBuffer s, int p), (s, p))
 #define texture texture_counted
 #define textureLod textureLod_counted
 #define texelFetch texelFetch_counted
@@ -51,7 +53,7 @@ void main() { atomicAdd(counted_[COUNTED_STAGE + 2], 1u); main_counted(); }
 )";
 
 struct Work {
-    double vertices = 0, fragments = 0, vertexReads = 0, fragmentReads = 0;
+    double vertices = 0, fragments = 0, vertexReads = 0, fragmentReads = 0, vertexFetches = 0, fragmentFetches = 0;
     std::string vertex, fragment;  // texts of its last program
 };
 struct Counting {
@@ -99,20 +101,22 @@ void pushGroup(GLenum source, GLuint id, GLsizei length, const GLchar* message) 
     realPush(source, id, length, message);
     counting.pass.assign(message, length < 0 ? std::strlen(message) : static_cast<size_t>(length));
     counting.program = 0;
-    const GLuint zeros[4] = {};
+    const GLuint zeros[kCounts] = {};
     glNamedBufferSubData(counting.buffer, 0, sizeof zeros, zeros);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kReadsBinding, counting.buffer);
 }
 void popGroup() {
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     glFinish();
-    GLuint counts[4] = {};
+    GLuint counts[kCounts] = {};
     glGetNamedBufferSubData(counting.buffer, 0, sizeof counts, counts);
     Work& work = counting.passes[counting.pass];
     work.vertexReads += counts[0];
     work.fragmentReads += counts[1];
     work.vertices += counts[2];
     work.fragments += counts[3];
+    work.vertexFetches += counts[4];
+    work.fragmentFetches += counts[5];
     for (const GLuint shader : counting.programs[counting.program]) {
         const auto& [type, text] = counting.shaders[shader];
         (type == GL_VERTEX_SHADER ? work.vertex : work.fragment) = text;
@@ -155,7 +159,7 @@ Status run(float spacing, int frames, const std::string& folder) {
     if (Status loaded = gpu::load(findCounting); !loaded) return loaded;
     glEnable(GL_DEBUG_OUTPUT);  // passes are named for a debugger that listens
     glCreateBuffers(1, &counting.buffer);
-    glNamedBufferStorage(counting.buffer, 4 * sizeof(GLuint), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    glNamedBufferStorage(counting.buffer, kCounts * sizeof(GLuint), nullptr, GL_DYNAMIC_STORAGE_BIT);
     const FrameView view = frameViewOf(cameraOf(scene->camera, (*session)->bounds()), scene->light, 1920, 1080, 0);
     Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(ShaderFiles::developer());
     if (!renderer) return renderer.error();
@@ -169,11 +173,11 @@ Status run(float spacing, int frames, const std::string& folder) {
     }
     std::vector<gpu::PassTraffic> traffic;
     if ((*renderer)->description()) traffic = gpu::trafficOf(*(*renderer)->description());
-    std::string csv = "pass,passes,read_bytes,written_bytes,vertices,fragments,vertex_reads,reads\n";
+    std::string csv = "pass,passes,read_bytes,written_bytes,vertices,fragments,vertex_reads,reads,vertex_fetches,fetches\n";
     for (const gpu::PassTraffic& pass : traffic) {
         const Work& work = counting.passes[pass.name];
-        csv += fmt::format("{},{},{},{},{:.0f},{:.0f},{:.0f},{:.0f}\n", pass.name, pass.passes, pass.read, pass.written, work.vertices,
-                           work.fragments, work.vertexReads, work.fragmentReads);
+        csv += fmt::format("{},{},{},{},{:.0f},{:.0f},{:.0f},{:.0f},{:.0f},{:.0f}\n", pass.name, pass.passes, pass.read, pass.written,
+                           work.vertices, work.fragments, work.vertexReads, work.fragmentReads, work.vertexFetches, work.fragmentFetches);
         for (const auto& [ending, text] : {std::pair("vert", &work.vertex), std::pair("frag", &work.fragment)})
             if (!text->empty())
                 if (Status written = writeFileAtomic(fmt::format("{}/{}.{}", folder, pass.name, ending), *text); !written) return written;

@@ -79,6 +79,25 @@ TEST(GpuCost, FasterGpusAreFasterAndMoreParticlesCostMore) {
     EXPECT_GT(predictPicture(all.front(), 1.0e6).ms(), predictPicture(all.front(), 1.0e5).ms());
 }
 
+// A device that is software writes fragments and reads textures one after the other: what each takes adds up.
+TEST(GpuCost, APictureInSoftwareTakesItsFragmentsAndItsReads) {
+    GpuSpec none;
+    none.bandwidth = 1.0e30;
+    EXPECT_EQ(predictPicture(none, 8192).ms(), 0);
+    const auto with = [&](double fragment, double filtered, double fetched) {
+        GpuSpec g = none;
+        g.fragmentSeconds = fragment;
+        g.filteredSeconds = filtered;
+        g.fetchSeconds = fetched;
+        return predictPicture(g, 8192).ms();
+    };
+    const double fragments = with(1.0e-9, 0, 0), filtered = with(0, 1.0e-9, 0), fetched = with(0, 0, 1.0e-9);
+    EXPECT_GT(fragments, 1920 * 1080 * 1.0e-6);  // more than the picture has pixels
+    EXPECT_GT(filtered, 0);
+    EXPECT_GT(fetched, 0);
+    EXPECT_NEAR(with(2.0e-9, 1.0e-9, 3.0e-9), 2 * fragments + filtered + 3 * fetched, 1.0e-9 * fragments);
+}
+
 TEST(GpuCost, AGpuIsFoundByItsNameOrItsBandwidth) {
     EXPECT_EQ(nearestGpu("NVIDIA GeForce RTX 3060/PCIe/SSE2", 0).gpu.name, "RTX 3060");
     EXPECT_TRUE(nearestGpu("AMD Radeon RX 6800 (navi21, LLVM 15, DRM 3.49)", 0).byName);

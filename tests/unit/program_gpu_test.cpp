@@ -49,6 +49,8 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
         for (const char* key : {"backend", "name", "driver", "predictedFrom"}) EXPECT_TRUE(device[key].isString()) << key;
         for (const char* key : {"bytesPerSecond", "arithmetic", "integer", "special", "loads", "rounds", "dispatchMs"})
             EXPECT_GT(device["rates"][key].asDouble(), 0) << key;
+        if (device["backend"] == "gl")
+            for (const char* key : {"fragments", "filteredReads", "texelFetches"}) EXPECT_GT(device["rates"][key].asDouble(), 0) << key;
     }
     EXPECT_EQ(gpu["series"].size(), 3 * gpu["devices"].size());  // the smallest size of each method
     for (const Json::Value& row : gpu["series"]) {

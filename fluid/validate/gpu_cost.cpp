@@ -266,17 +266,21 @@ FrameCost predictPicture(const GpuSpec& gpu, double particles) {
         const auto number = [&](const char* column) { return numberIn(row[table.column(column)]); };
         if (number("particles") != at) continue;
         const double vertices = number("vertices") * particles / at, fragments = number("fragments");
-        const double operations = fragments * number("operations") + vertices * number("vertex_operations");
+        double operations = 0, computing = 0;  // computing: s
+        for (const auto& [of, kind] : {std::pair("operations", GpuOp::arithmetic), std::pair("special", GpuOp::special)}) {
+            const double each = fragments * number(of) + vertices * number(("vertex_" + std::string(of)).c_str());
+            operations += each;
+            computing += each * gpu.seconds[static_cast<size_t>(kind)];
+        }
         const double fetches = fragments * number("fetches") + vertices * number("vertex_fetches");
         const double reads = fragments * number("reads") + vertices * number("vertex_reads");  // fetches among them
-        const double arithmetic = gpu.seconds[static_cast<size_t>(GpuOp::arithmetic)];
         const double inTurn = fragments * gpu.fragmentSeconds + (reads - fetches) * gpu.filteredSeconds + fetches * gpu.fetchSeconds;
         const double bytes = number("read_bytes") + number("written_bytes");
         const struct {
             double seconds;
             const char* bound;
         } limits[] = {
-            {operations * arithmetic + inTurn, "operations"},
+            {computing + inTurn, "operations"},
             {gpu.texels > 0 ? reads / gpu.texels : 0, "cache"},
             {bytes / gpu.bandwidth, "memory"},
             {gpu.pixels > 0 ? fragments / gpu.pixels : 0, "pixels"},

@@ -89,7 +89,7 @@ Result<DeviceRates> measureRates(Device& device) {
         return Loop{round[0], std::max(eight / 8, 1.0e-16)};
     };
     const Loop arithmetic = loop(0), integer = loop(1), special = loop(2), load = loop(3);
-    rates.arithmetic = 2 / arithmetic.operation;  // x * a + b
+    rates.arithmetic = 2 / arithmetic.operation;  // (x + a) * b
     rates.integer = 2 / integer.operation;        // x * 3 ^ a
     rates.special = 1 / special.operation;
     // A load comes with one addition of floats and two of integers.

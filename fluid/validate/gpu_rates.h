@@ -9,7 +9,7 @@ namespace rivulet {
 // Of the whole device, all of it busy.
 struct DeviceRates {
     double bandwidth = 0;   // bytes/s, read and written together
-    double arithmetic = 0;  // operations/s: x * a + b is two
+    double arithmetic = 0;  // operations/s: (x + a) * b is two, and cannot be fused
     double integer = 0;     // operations/s
     double special = 0;     // square roots/s
     double loads = 0;       // vec4/s, from a few elements that every cache holds

@@ -133,17 +133,25 @@ def count_frames(program, to, *_):
 
 ARITHMETIC = ("FAdd", "FSub", "FMul", "FNegate", "FOrd", "FUnord", "IAdd", "ISub", "IMul", "INotEqual", "IEqual", "SLess", "SGreater", "ULess", "UGreater",
               "Select", "Convert", "Bitwise", "Shift", "Not", "LogicalAnd", "LogicalOr", "BitField")
+DIVISIONS = ("FDiv", "FMod", "FRem", "UDiv", "SDiv", "UMod", "SMod")
+# Functions of GLSL, a component: operations, then roots, divisions and transcendental functions. Others are one operation.
+FUNCTIONS = {"Fma": (2, 0), "FMix": (3, 0), "FClamp": (2, 0), "SClamp": (2, 0), "UClamp": (2, 0), "Step": (2, 0), "SmoothStep": (8, 1), "Fract": (2, 0),
+             "Pow": (1, 2), "Sqrt": (0, 1), "InverseSqrt": (0, 1), "Exp": (1, 1), "Exp2": (0, 1), "Log": (1, 1), "Log2": (0, 1), "Sin": (1, 1), "Cos": (1, 1),
+             "Tan": (2, 3), "Acos": (8, 1), "Asin": (8, 1), "Atan": (10, 1), "Atan2": (12, 1), "Cross": (3, 0), "Reflect": (3, 0)}
 
 
 def operations_of(text, stage, folder):
-    """Operations and reads of textures in a shader's text, once each: SPIR-V with everything inlined. A root or division counts 8."""
+    """What a shader's text has once each: operations (a branch is two), special (roots, divisions, transcendental functions), reads of textures. SPIR-V
+    with everything inlined."""
     source, code = folder / f"one.{stage}", folder / "one.spv"
     source.write_text(text)
     run(["glslangValidator", "-G", "--auto-map-locations", "--auto-map-bindings", "-S", stage, source, "-o", code])
     run(["spirv-opt", "--skip-validation", "-O", code, "-o", code])
-    widths, operations, reads = {}, 0, 0
+    widths, count = {}, {"operations": 0, "special": 0, "reads": 0}
     for line in run(["spirv-dis", "--raw-id", "--no-header", code]).splitlines():
         words = line.split()
+        if words and words[0] == "OpBranchConditional":
+            count["operations"] += 2
         if len(words) < 3 or words[1] != "=":
             continue
         name = words[2][2:]
@@ -151,19 +159,23 @@ def operations_of(text, stage, folder):
             widths[words[0]] = int(words[4])
         width = widths.get(words[3], 1) if len(words) > 3 else 1
         if name.startswith(("ImageSample", "ImageFetch")):
-            reads += 1
+            count["reads"] += 1
         elif name == "Dot":
-            operations += 3
-        elif name in ("FDiv", "FMod", "FRem", "UDiv", "SDiv", "UMod", "SMod"):
-            operations += 8 * width
+            count["operations"] += 5  # of three components, as are Length and Normalize
+        elif name in DIVISIONS:
+            count["special"] += width
+        elif name == "ExtInst" and words[5] in ("Length", "Normalize", "Distance"):
+            count["operations"] += 5 + (width if words[5] == "Normalize" else 0)
+            count["special"] += 1
         elif name == "ExtInst":
-            slow = words[5] in ("Sqrt", "InverseSqrt", "Exp", "Exp2", "Log", "Log2", "Pow", "Sin", "Cos", "Tan", "Acos", "Asin", "Atan", "Atan2", "Length", "Normalize")
-            operations += (8 if slow else 1) * width
-        elif name in ("VectorTimesScalar", "VectorTimesMatrix", "MatrixTimesVector"):
-            operations += width * (1 if name == "VectorTimesScalar" else 4)
-        elif name.startswith(ARITHMETIC):
-            operations += width
-    return operations, reads
+            operations, special = FUNCTIONS.get(words[5], (1, 0))
+            count["operations"] += operations * width
+            count["special"] += special * width
+        elif name in ("VectorTimesMatrix", "MatrixTimesVector"):
+            count["operations"] += width * (2 * width - 1)
+        elif name == "VectorTimesScalar" or name.startswith(ARITHMETIC):
+            count["operations"] += width
+    return count
 
 
 def count_passes(program, to, *_):
@@ -181,16 +193,18 @@ def count_passes(program, to, *_):
                 out = {"particles": particles, **row}
                 for stage, before in (("frag", ""), ("vert", "vertex_")):
                     shader = folder / f"{row['pass']}.{stage}"
-                    each, inside = operations_of(shader.read_text(), stage, folder) if shader.exists() else (0, 0)
+                    each = operations_of(shader.read_text(), stage, folder) if shader.exists() else dict.fromkeys(("operations", "special", "reads"), 0)
                     counted = reads[stage] / invocations[stage] if invocations[stage] > 0 else 0
+                    loops = max(1.0, counted / each["reads"] if each["reads"] else 1.0)
                     out[before + "reads"] = f"{counted:.4g}"
                     out[before + "fetches"] = f"{fetches[stage] / invocations[stage] if invocations[stage] > 0 else 0:.4g}"
-                    out[before + "operations"] = f"{each * max(1.0, counted / inside if inside else 1.0):.4g}"
+                    for kind in ("operations", "special"):
+                        out[before + kind] = f"{each[kind] * loops:.4g}"
                 rows.append(out)
             print(f"{particles} particles", flush=True)
     write(to / "passes.csv", "What the passes of a picture of dam_break do, 1920x1080, fine, with pbf: counted by tests/gpu_cost/count.py passes. Bytes: whole textures\n"
-          "# and buffers, once for each pass that declares them. operations, reads (of textures) and fetches (of texels) among\n"
-          "# them: of a fragment; of a vertex.", rows)
+          "# and buffers, once for each pass that declares them. reads (of textures), fetches (of texels) among them,\n"
+          "# operations (a branch is two) and special (roots, divisions, transcendental functions): of a fragment; of a vertex.", rows)
 
 
 def write(path, doc, rows):

@@ -3,6 +3,7 @@
 // run.sh starts it with RADV's null device (RADV_FORCE_FAMILY), which compiles for a GPU that is not there and runs nothing.
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>

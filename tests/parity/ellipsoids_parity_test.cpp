@@ -1,6 +1,7 @@
 // Ellipsoids about particles equal a reference in double precision on every device.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -1,6 +1,7 @@
 // Every row of forces() gives the same result on cl and gl as on the cpu, for each particle and each form of its kernels.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -2,6 +2,8 @@
 // particles, units and the periodic border are as arbitrary there as on the cpu.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "fluid/sim/methods/method.h"
 #include "tests/parity/devices.h"
 #include "tests/physics/relation_rounds.h"

@@ -1,6 +1,8 @@
 // Surface and solid voxels: the same bits on gl and cl as on the host, and on the cpu with one thread and two.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "fluid/voxel/voxelize_solid.h"
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/parity/devices.h"

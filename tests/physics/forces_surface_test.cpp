@@ -2,6 +2,7 @@
 // wind.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/compute/device_cpu.h"

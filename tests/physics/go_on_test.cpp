@@ -1,6 +1,7 @@
 // A world continues from another one after solids have moved: particles are removed only where a solid now is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 

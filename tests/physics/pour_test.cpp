@@ -1,6 +1,7 @@
 // Pouring by mouse: the jet's rate at the pointer's position, limited by the free slots.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fluid/sim/world/host_particles.h"

@@ -1,6 +1,7 @@
 // The thesis's chapter 4: the page agrees with the table, and a short run measures the documented quantities.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 

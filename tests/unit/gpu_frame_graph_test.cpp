@@ -1,6 +1,7 @@
 // The frame graph's four promises: cull, pool, barriers, times.
 #include <rivulet_glad/gl.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "engine/gpu/frame_graph.h"

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::testing::program_explain_test {

@@ -4,6 +4,7 @@
 #include <imgui_internal.h>
 #include <rivulet_glad/gl.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -1,6 +1,7 @@
 // The record of a run, against numbers known beforehand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 

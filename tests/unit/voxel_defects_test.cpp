@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <json/json.h>
 
+#include <algorithm>
 #include <map>
 
 #include "fluid/voxel/mesh_defects.h"

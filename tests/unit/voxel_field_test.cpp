@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/core/jobs.h"
 #include "tests/unit/voxel_test_meshes.h"
 

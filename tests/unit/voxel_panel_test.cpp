@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <rivulet_glad/gl.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 

@@ -1,6 +1,8 @@
 // Surface voxels against an independent oracle: all thirteen separating axes in long double, at every voxel near every triangle.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/core/jobs.h"
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/unit/voxel_test_meshes.h"

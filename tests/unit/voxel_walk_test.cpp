@@ -1,6 +1,7 @@
 // The walk against a brute-force oracle: every set voxel that the exact segment touches. And the band's samples and normals.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <thread>

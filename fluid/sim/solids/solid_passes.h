@@ -150,7 +150,7 @@ class SolidPasses {
     Field static_;
     bool staticAdded_ = true;  // as Moving::added
     FieldParams block_{};
-    Buffer staticBlock_;
+    Buffer staticBlock_;  // then the planes, see fluid/solids/probe_walls
     float blockDt_ = 0;  // staticBlock_ was written for this step length
     std::vector<Moving> rigid_, deforming_;
     std::vector<Pose> poses_;

@@ -109,6 +109,8 @@ typedef float4 real4;
     }
 #endif
 #if !defined(__cplusplus)  // on a GPU a lane is the particle itself
+// Whether a sum of squares is below `limit`, and not NaN: by its bits, since compilers for GPUs may take !(NaN < y) as NaN >= y.
+#define SQUARE_BELOW(x, limit) (FLOAT_BITS(x) < FLOAT_BITS(limit))
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))
 #define ANY_LANE(condition) (condition)
 #define NEIGHBOR_TYPE uint  // see fluid/grid/neighbors.h

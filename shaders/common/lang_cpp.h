@@ -158,6 +158,7 @@ INLINE void atomicMax(uint* p, uint v) {
     while (had < v && !__atomic_compare_exchange_n(p, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
     }
 }
+#define SQUARE_BELOW(x, limit) (FLOAT_BITS(x) < FLOAT_BITS(limit))
 #define TO_INT(x) static_cast<int>(x)
 #define TO_UINT(x) static_cast<unsigned>(x)
 #define TO_FLOAT(x) static_cast<float>(x)

@@ -341,6 +341,41 @@ Answer queries(Device& device) {
     return a;
 }
 
+// In each method one particle becomes NaN: it is counted, all others go on and meet the walls.
+Answer lost(Device& device) {
+    constexpr uint32_t kLost = 77;
+    const VoxelField obstacle = test::baked(test::makeBox(vec3(0.35F, -0.1F, 0.05F), vec3(0.45F, 0.1F, 0.2F)), 0.025F, kSpacing);
+    Answer a;
+    for (const char* method : {"pbf", "dfsph", "wcsph"}) {
+        auto world = make(device, column(method), {.field = &obstacle, .planes = {{vec3(0.0F, 0.02F, 0.1F), vec3(0.05F, 1.0F, 0.1F)}}});
+        if (!world) return a;
+        step(*world);
+        const ParticleView view = world->particles();
+        const std::vector<uint32_t> ids = device.readAll<uint32_t>(*view.id, view.count);
+        const auto slot = static_cast<size_t>(std::find(ids.begin(), ids.end(), kLost) - ids.begin());
+        const vec4 nowhere(NAN, 0.1F, NAN, 1.0F);
+        device.write(const_cast<Buffer&>(*view.position), std::as_bytes(std::span(&nowhere, 1)), slot * sizeof(vec4));
+        const size_t before = readParticles(*world).id.size();
+        for (int k = 0; k < 2; ++k) step(*world);
+        const HostParticles all = readParticles(*world);
+        std::vector<std::pair<uint32_t, vec3>> at;
+        for (size_t k = 0; k < all.id.size(); ++k)
+            if (all.id[k] != kLost) at.emplace_back(all.id[k], vec3(all.position[k]));
+        std::sort(at.begin(), at.end(), [](const auto& one, const auto& other) { return one.first < other.first; });
+        size_t wild = 0;
+        for (const auto& [id, x] : at) {
+            wild += std::isfinite(x.x + x.y + x.z) ? 0 : 1;
+            add(a.exact, x);
+        }
+        EXPECT_EQ(wild, 0U) << "particles that have become NaN by one that is, " << method;
+        EXPECT_EQ(at.size(), before - 1) << method;
+        const auto stats = world->stats();
+        EXPECT_EQ(stats.lost, 1U) << method;
+        EXPECT_EQ(stats.nan, 1U) << method;
+    }
+    return a;
+}
+
 void addBits(const std::vector<uint8_t>& bits, std::vector<float>& to) {
     for (const uint8_t byte : bits) to.push_back(static_cast<float>(byte));
 }
@@ -542,6 +577,7 @@ const std::vector<SmallWorld>& smallWorlds() {
         {"sleep", sleep},
         {"wetness", wetness},
         {"queries", queries},
+        {"lost", lost},
         {"voxels", voxels},
         {"skin", skin},
         {"flow", flow},

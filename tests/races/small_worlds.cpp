@@ -428,15 +428,16 @@ Answer skin(Device& device) {
 }
 
 // The drops of a flow, whose ids are slots: by what is theirs. `painting`: they leave trails. Two drops that paint a cell share it by their
-// order, which is then noise in volumes: 2.8 % at most was seen. Without trails all is exact.
-void addDrops(const SurfaceFlow& flow, Answer& a, bool painting) {
+// order, which is then noise in volumes: 2.8 % at most was seen. Without trails all is exact; on a GPU to rounding, since the order gives
+// drops their ids, in whose order sums are.
+void addDrops(const SurfaceFlow& flow, Answer& a, bool painting, bool onCpu) {
     std::vector<vec4> drops;
     for (const SkinDrop& d : flow.drops()) drops.emplace_back(20.0F * d.position, static_cast<float>(d.volume * 1e9));
     std::sort(drops.begin(), drops.end(), [](const vec4& one, const vec4& other) {
         return std::tie(one.w, one.x, one.y, one.z) < std::tie(other.w, other.x, other.y, other.z);
     });
     if (!painting)
-        for (const vec4& d : drops) add(a.exact, d);
+        for (const vec4& d : drops) add(onCpu ? a.exact : a.near, d);
     dvec3 middle(0.0);
     double sum = 0, square = 0;
     for (const vec4& d : drops) {
@@ -452,7 +453,7 @@ void addDrops(const SurfaceFlow& flow, Answer& a, bool painting) {
     EXPECT_EQ(ledger.added, ledger.drops + ledger.film + ledger.left + ledger.evaporated + ledger.refused);
     a.near.push_back(static_cast<float>(1.0e-8 * static_cast<double>(ledger.film)));
     a.near.push_back(static_cast<float>(1.0e-8 * static_cast<double>(ledger.left)));
-    a.within = painting ? 0.03 : 1.0e-6;
+    a.within = painting ? 0.03 : onCpu ? 1.0e-6 : 1.0e-4;
 }
 Answer flowOnBall(Device& device, bool painting) {
     Answer a;
@@ -492,7 +493,7 @@ Answer flowOnBall(Device& device, bool painting) {
         device.poll();
         maps->draw(*made);
     }
-    addDrops(*made, a, painting);
+    addDrops(*made, a, painting, device.backend() == Backend::cpu);
     const std::vector<uint32_t> words = device.readAll<uint32_t>(maps->texels(), maps->texels().bytes() / 4);
     EXPECT_TRUE(std::ranges::any_of(words, [](uint32_t w) { return w != 0; }));
     return a;
@@ -517,7 +518,7 @@ Answer thesisFlow(Device& device) {
         device.finish();
         device.poll();
     }
-    addDrops(*made, a, false);
+    addDrops(*made, a, false, device.backend() == Backend::cpu);
     return a;
 }
 

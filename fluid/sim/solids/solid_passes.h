@@ -151,7 +151,7 @@ class SolidPasses {
     bool staticAdded_ = true;  // as Moving::added
     FieldParams block_{};
     Buffer staticBlock_;  // then the planes, see fluid/solids/probe_walls
-    float blockDt_ = 0;  // staticBlock_ was written for this step length
+    float blockDt_ = 0;   // staticBlock_ was written for this step length
     std::vector<Moving> rigid_, deforming_;
     std::vector<Pose> poses_;
     double frameSeconds_ = 0;

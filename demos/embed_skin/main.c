@@ -32,13 +32,13 @@ static const char* const deform_source = GLSL(
         moved[i] = vec4(p.x, c * p.y + s * p.z, c * p.z - s * p.y, 1.0);
     });
 static const char* const vertex_source = GLSL(
-    layout(binding = 1, std430) readonly buffer Moved { vec4 moved[]; };
     layout(location = 0) in vec2 uv;
+    layout(location = 1) in vec3 moved;
     uniform mat4 clip_from_world;
     out vec3 place;
     out vec2 at;
     void main() {
-        place = moved[gl_VertexID].xyz;
+        place = moved;
         at = uv;
         gl_Position = clip_from_world * vec4(place, 1.0);
     });
@@ -200,6 +200,8 @@ int main(int count, char** arguments) {
     glCreateVertexArrays(1, &array);
     glVertexArrayVertexBuffer(array, 0, buffers[2], 0, 8), glVertexArrayElementBuffer(array, buffers[3]);
     glEnableVertexArrayAttrib(array, 0), glVertexArrayAttribFormat(array, 0, 2, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayVertexBuffer(array, 1, buffers[1], 0, 16), glEnableVertexArrayAttrib(array, 1);
+    glVertexArrayAttribFormat(array, 1, 3, GL_FLOAT, GL_FALSE, 0), glVertexArrayAttribBinding(array, 1, 1);
 
     rivulet_context* context = NULL;
     const rivulet_context_options options = {.size = sizeof options, .find = headless ? eglGetProcAddress : glfwGetProcAddress,
@@ -230,7 +232,7 @@ int main(int count, char** arguments) {
         uint32_t map = 0;
         done(rivulet_skin_step(skin, &inputs, 1.0 / 60, &why));
         done(rivulet_skin_texture(skin, &map, &why));
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT); /* for the host's own vertex shader, which reads the buffer */
+        glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT); /* for the host's own vertex shader, which reads the buffer */
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         glUseProgram(material);
         glUniformMatrix4fv(glGetUniformLocation(material, "clip_from_world"), 1, GL_FALSE, clip_from_world);

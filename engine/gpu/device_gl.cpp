@@ -81,7 +81,7 @@ class GlDevice final : public Device {
         std::string path;
         gpu::Program program;
         uint32_t localSize;
-        size_t bindings = 0;   // the highest SSBO binding that the compiled kernel uses
+        size_t bindings = 0;   // SSBO bindings that the compiled kernel uses: those below this number
         GLint groupBase = -1;  // location of lang.h's groupBase_; -1: the kernel does not use THREAD_ID
         size_t passed = 0;     // buffers passed by the last dispatch; 0: there was none
         void link();           // finds bindings and groupBase
@@ -130,7 +130,8 @@ GlDevice::GlDevice(const ShaderFiles& files, Log log, const GlOptions& options)
       log_(std::move(log)),
       localSize_(options.localSize),
       maxLocalSize_(deviceLimit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, SIZE_MAX)),
-      maxBindings_(deviceLimit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, options.mostBindings)),
+      maxBindings_(
+          deviceLimit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, deviceLimit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, options.mostBindings))),
       blockAlignment_(std::max<size_t>(static_cast<size_t>(deviceLimit(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT)), 16)) {
     GLint groups = 0;
     glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
@@ -151,17 +152,18 @@ bool GlDevice::isLost() {
     return health_.state == DeviceHealth::lost;
 }
 
-size_t highestBinding(GLuint name) {
+// SSBO bindings that the compiled kernel uses are below this number.
+size_t bindingsOf(GLuint name) {
     GLint blocks = 0;
     glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
-    GLint highest = 0;
+    GLint bindings = 0;
     for (GLint k = 0; k < blocks; ++k) {
         const GLenum property = GL_BUFFER_BINDING;
         GLint binding = 0;
         glGetProgramResourceiv(name, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(k), 1, &property, 1, nullptr, &binding);
-        highest = std::max(highest, binding);
+        bindings = std::max(bindings, binding + 1);
     }
-    return static_cast<size_t>(highest);
+    return static_cast<size_t>(bindings);
 }
 
 Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> defines) {
@@ -185,7 +187,7 @@ Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> d
                                   maxLocalSize_));
     Result<gpu::Program> program = gpu::Program::create(files_, {file}, sorted);
     if (!program) return program.error();
-    if (const size_t needed = highestBinding(program->name()); needed > maxBindings_)
+    if (const size_t needed = bindingsOf(program->name()); needed > maxBindings_)
         return failed(
             fmt::format("{} needs {} storage buffers, but {} allows {}; try --backend cpu", file, needed, info_.name, maxBindings_));
     kernels_.push_back({std::move(key), std::string(path), std::move(*program), localSize});
@@ -194,7 +196,7 @@ Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> d
 }
 
 void GlDevice::Entry::link() {
-    bindings = highestBinding(program.name());
+    bindings = bindingsOf(program.name());
     groupBase = glGetUniformLocation(program.name(), "groupBase_");
 }
 
@@ -203,7 +205,7 @@ Result<size_t> GlDevice::reload() {
     for (Entry& e : kernels_) programs.push_back(&e.program);
     const Result<size_t> changed = gpu::Program::reload(programs, [this](size_t k, GLuint name) {
         const Entry& e = kernels_[k];
-        const size_t wanted = highestBinding(name);
+        const size_t wanted = bindingsOf(name);
         if (e.passed == 0 || wanted <= e.passed) return ok();
         return Status(failed(fmt::format("shaders/{}.kernel now reads {} buffers, but the program passes {}; rebuild the program", e.path,
                                          wanted, e.passed)));
@@ -358,7 +360,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     entry.passed = buffers.size();
     if (threads == 0 || skips() || lost() || !bindParams(params)) return;
     for (size_t k = 0; k < buffers.size(); ++k)
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(k + 1), buffers[k] ? nameOf(*buffers[k]) : 0);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(k), buffers[k] ? nameOf(*buffers[k]) : 0);
     if (timer_.pending() > kHarvestAbove) harvest();
     entry.program.use();
     timer_.begin(kernel.index);

@@ -22,9 +22,9 @@ struct GlOptions {
 };
 
 // Needs a current OpenGL 4.5 context, at creation and in every call, with its functions loaded (ContextEgl and WindowGlfw do this). Kernels
-// are read through `files`. dispatch() changes binding 0 of GL_UNIFORM_BUFFER, bindings 1..n of GL_SHADER_STORAGE_BUFFER and the program in
-// use. `log` receives failures of calls that return no Result. A Buffer's handle() is a GL buffer name; it may be used for drawing
-// (attributes, elements, SSBO, uniform, indirect) without further barriers.
+// are read through `files`. dispatch() changes binding 0 of GL_UNIFORM_BUFFER, bindings from 0 on of GL_SHADER_STORAGE_BUFFER and the
+// program in use. `log` receives failures of calls that return no Result. A Buffer's handle() is a GL buffer name; it may be used for
+// drawing (attributes, elements, SSBO, uniform, indirect) without further barriers.
 std::unique_ptr<Device> makeGlDevice(const ShaderFiles& files, Log log = {}, const GlOptions& options = {});
 
 // Call this after `gl` was used with another context that shares objects with the present one. Objects that contexts do not share are

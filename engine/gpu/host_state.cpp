@@ -90,7 +90,7 @@ constexpr GLenum targetOf(GLuint unit) {
         if (unit >= range.first && unit < range.first + range.count) return range.target;
     return 0;
 }
-constexpr GLuint kAllUnits = 32, kImages = 8, kStorage = 9, kUniform = 4;
+constexpr GLuint kAllUnits = 32, kImages = 8, kStorage = 8, kUniform = 4;
 constexpr GLuint kDrawBuffers = 2;  // that a pass blends or masks
 
 GLint number(GLenum what) {

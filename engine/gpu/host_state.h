@@ -30,7 +30,7 @@ class HostState {
         everything,  // for passes of the host's own (RendererRow), which may change more: all draw buffers, viewports, images and textures
         // For a host that sets all state it needs itself: no state is asked for but the depth convention. Afterwards state is at OpenGL's
         // defaults, as of a new context, but: what is bound to framebuffers and viewport 0; programs, vertex arrays, and on texture units 0
-        // to 11, 16 and 24 to 30, on uniform buffers 0 to 3 and on storage buffers 0 to 8, nothing.
+        // to 11, 16 and 24 to 30, on uniform buffers 0 to 3 and on storage buffers 0 to 7, nothing.
         nothing
     };
     explicit HostState(Saves saves = rivulets);

@@ -361,8 +361,8 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
         c.drawTo({colour}, depth);
         bindFrame(c, frame);
         if (wet.values) {
-            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, c.buffer(wet.cells));
-            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, c.buffer(wet.values));
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, c.buffer(wet.cells));
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, c.buffer(wet.values));
         }
         // The full-screen triangle is at the far plane: sky passes the depth test where nothing is nearer, the floor where
         // something is.

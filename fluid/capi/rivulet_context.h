@@ -92,7 +92,7 @@ typedef struct rivulet_context_options {
     /* 0: every call restores the host's OpenGL state. 1: no call asks for it, but for the depth convention, which saves about 130 calls of
        OpenGL; for a host that sets the state it needs. Afterwards state is as in a new context, but that of draw buffers from the third on,
        which stays; nothing is bound to framebuffers, to texture units 0 to 11, 16 and 24 to 30, to uniform buffers 0 to 3 and to storage
-       buffers 0 to 8; viewport 0 and its scissor box have any value. */
+       buffers 0 to 7; viewport 0 and its scissor box have any value. */
     uint32_t plain_state;
 } rivulet_context_options;
 

@@ -173,7 +173,7 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     w.moved = v.moved;
     w.stepped = v.steps;
     d.fill(w.reached, 0);
-    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, v.id, v.lean, &w.cap, &w.reached, &w.near, v.motion}, s.slots);
+    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, v.id, &w.cap, &w.reached, &w.near, v.motion}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.reached}, w.tiles);
     d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 16 * w.tiles);

@@ -169,7 +169,6 @@ void SurfaceFlow::Impl::takeCounters() {
         t->refused += c[0] + (uint64_t{c[7]} << 16U);
         t->merges += c[1];
         t->leaving = std::min(c[2], MOST_LEFT);
-        t->hang = std::min(c[3], MOST_HANGING);
         t->film = c[6] > 0;
         t->evaporated += c[4];
     });
@@ -194,7 +193,7 @@ void SurfaceFlow::Impl::takeCounters() {
         if (!t) return;
         const auto* first = reinterpret_cast<const FlowHanging*>(bytes.data());
         t->hanging.clear();
-        for (const FlowHanging& h : std::span(first, t->hang))
+        for (const FlowHanging& h : std::span(first, std::min(first->count, MOST_HANGING)))
             t->hanging.push_back({.id = static_cast<uint32_t>(h.position.w),
                                   .position = vec3(h.position),
                                   .up = vec3(h.up),
@@ -251,7 +250,7 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
     if (!moved) return;
     device->run(basis, f, {&skin, &point, &frames}, f.triangles);
     if (thesis) {
-        device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven, &point, &curved}, f.places);
+        device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven, &point}, f.places);
         thesis->makeField(forThesis(), f, true);
     }
     moved = false;
@@ -283,6 +282,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     w.turnFrame(inputs.toWorld, seconds, f);
     w.moveSkin(inputs, f);
     w.device->fill(w.counter, 0);
+    if (!w.thesis) w.device->fill(w.hangs, 0);
     if (!w.births.empty()) {
         w.device->write(w.birth, std::as_bytes(std::span(w.births)));
         w.device->run(w.born, f, {&w.grid->cellStart(), &w.drops.id, &w.birth, &w.drop, &w.motion, &w.counter}, f.births);
@@ -294,8 +294,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
         w.device->run(w.brim, f, {&w.chain, &w.spill, &w.grid->cellStart(), &w.drops.id, &w.frames, &w.drop, &w.motion, &w.counter},
                       f.brims);
     if (w.params.pearls && !w.thesis && w.steps > 1)
-        w.device->run(w.pearl, f, {&w.grid->cellStart(), &w.drops.id, &w.skin, &w.frames, &w.drop, &w.motion, &w.lean, &w.counter},
-                      f.count);
+        w.device->run(w.pearl, f, {&w.grid->cellStart(), &w.drops.id, &w.skin, &w.frames, &w.drop, &w.motion, &w.counter}, f.count);
     // The force that holds a film's edge is stiff; single drops have none.
     const int parts = w.thesis ? w.thesis->parts(seconds) : w.reports->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
     for (int k = 0; k < parts; ++k) {
@@ -353,16 +352,16 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     const uint32_t threads = grid->pairThreads();
     const Buffer& neighbors = grid->neighbors();
     const Buffer &x = drops.position, &v = drops.velocity;
-    spread.run(*device, drops, s, {&neighbors, &x, &v, &side, &names, &spreads}, threads);
+    spread.run(*device, drops, s, {&neighbors, &x, &v, &side, &names, &merged}, threads);
     meet.run(*device, drops, s, {&neighbors, &x, &v, &side, &names, &into}, threads);
     gather.run(*device, drops, s, {&neighbors, &x, &v, &names, &into, &side, &merged, &shift}, threads);
-    if (reports->film) press.run(*device, drops, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
+    if (reports->film) press.run(*device, drops, s, {&neighbors, &x, &v, &side, &merged}, threads);
     device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
     touchOthers(f, s);
     device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);
-    device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven, &point, &curved}, f.places);
-    device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion, &counter, &hangs, &curved}, f.count);
-    device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &driven, &motion, &lean}, f.count);
+    device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven, &point}, f.places);
+    device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &drop, &motion, &hangs}, f.count);
+    device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &driven, &motion}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);
     device->run(paint, f, {&drops.id, &skin, &frames, &motion, &film, &drop, &painted}, f.count);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
@@ -375,7 +374,7 @@ Status SurfaceFlow::Impl::moveThesis(const FlowStep& step, const StepParams& s) 
     f.trail = 0;
     const Buffer &layout = thesis->skin(), &flat = thesis->flat();
     if (Status pressed = thesis->press(forThesis(), f, s); !pressed) return pressed;
-    device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &driven, &motion, &lean}, f.count);
+    device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &driven, &motion}, f.count);
     device->run(walk, f, {&drops.id, &layout, &flat, &shift, &drop, &motion}, f.count);
     thesis->releaseDrops(forThesis(), f);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
@@ -385,7 +384,7 @@ Status SurfaceFlow::Impl::moveThesis(const FlowStep& step, const StepParams& s) 
 std::vector<SkinDrop> SurfaceFlow::drops() const {
     const Impl& w = *impl_;
     const auto state = w.device->readAll<uint32_t>(w.drop, size_t{w.count()} * DROP_UINTS);
-    const auto motion = w.device->readAll<vec4>(w.motion, 2 * size_t{w.count()});
+    const auto motion = w.device->readAll<vec4>(w.motion, MOTION_VECS * size_t{w.count()});
     const auto frames = w.device->readAll<vec4>(w.frames, 5 * w.mesh.triangleCount());
     std::vector<vec4> flat;
     if (w.thesis) flat = w.device->readAll<vec4>(w.thesis->flat(), 5 * w.mesh.triangleCount());
@@ -395,13 +394,13 @@ std::vector<SkinDrop> SurfaceFlow::drops() const {
         if (d[DROP_VOLUME] == 0) continue;
         const SkinPoint at{d[DROP_TRIANGLE] & DROP_NUMBER, std::bit_cast<float>(d[DROP_B1]), std::bit_cast<float>(d[DROP_B2])};
         const vec4* basis = &frames[5 * size_t{at.triangle}];
-        vec3 velocity(motion[2 * size_t{k}]);
+        vec3 velocity(motion[MOTION_VECS * size_t{k}]);
         if (w.thesis) {  // UV/s
             const vec4* uv = &flat[5 * size_t{at.triangle}];
             velocity = vec3(basis[1]) * glm::dot(vec3(uv[3]), velocity) + vec3(basis[2]) * glm::dot(vec3(uv[4]), velocity);
         }
         all.push_back({k, at, vec3(basis[0]) + at.b1 * vec3(basis[1]) + at.b2 * vec3(basis[2]), velocity, d[DROP_VOLUME] * 1.0e-15,
-                       double{motion[2 * size_t{k}].w}, double{std::bit_cast<float>(d[DROP_SHARE])}});
+                       double{motion[MOTION_VECS * size_t{k}].w}, double{std::bit_cast<float>(d[DROP_SHARE])}});
     }
     return all;
 }
@@ -446,7 +445,6 @@ FlowView SurfaceFlow::view() const {
                .position = &w.drops.position,
                .velocity = &w.drops.velocity,
                .id = &w.drops.id,
-               .lean = &w.lean,
                .motion = &w.motion,
                .slots = w.count(),
                .largestRadius = std::max({static_cast<float>(contactRadius(meanAngle(w.params)) * std::cbrt(largest)),

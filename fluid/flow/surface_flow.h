@@ -109,8 +109,7 @@ struct FlowView {
     Device* device = nullptr;
     const Buffer *skin, *point, *basis, *film, *painted;  // as in the kernels of shaders/flow
     const Buffer *cellStart, *position, *velocity, *id;   // drops as last sorted: position.w radius, m; velocity.w volume, m^3
-    const Buffer* lean;                                   // by id: see flow/steer
-    const Buffer* motion;                                 // 2 by id: see flow/law
+    const Buffer* motion;                                 // 3 by id: see flow/law, flow/steer
     StepParams grid{};                                    // the grid's part of it
     uint32_t slots = 0;                                   // of drops
     float largestRadius = 0;                              // m, of a drop's foot; wider ones only where several merged at once

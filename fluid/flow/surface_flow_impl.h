@@ -57,11 +57,11 @@ struct SurfaceFlow::Impl : FlowCourse {
     Kernel take, rest, mark, facing, goOver, basis, stand, drive, born, brim, pearl, place, name, merge, law, steer, walk, paint, dry,
         leave;
     PairKernel meet, gather, spread, press;
-    Buffer skin, given, hostMoved, point, frames, driven, curved, wanted, painted, begin, footprint, weight;  // of the mesh
-    Buffer drop, motion, lean;                                                                                // by id
-    Buffer names, sortedOf, side, into, merged, shift, spreads, faces, reached;                               // sorted
-    Buffer chain, spill;                                                                                      // of brims
-    Buffer film;                                                                                              // picolitres, of each cell
+    Buffer skin, given, hostMoved, point, frames, driven, wanted, painted, begin, footprint, weight;  // of the mesh
+    Buffer drop, motion;                                                                              // by id
+    Buffer names, sortedOf, side, into, merged, shift, faces, reached;                                // sorted
+    Buffer chain, spill;                                                                              // of brims
+    Buffer film;                                                                                      // picolitres, of each cell
     Buffer birth, counter, left, hangs;
     std::vector<float> uneven;        // of each place: factor of the holding force
     std::vector<uint32_t> firstCell;  // of each triangle's lattice, and the end
@@ -69,8 +69,8 @@ struct SurfaceFlow::Impl : FlowCourse {
     struct Reports {
         uint64_t refused = 0, left = 0, evaporated = 0;  // picolitres
         uint64_t merges = 0;
-        uint32_t leaving = 0, hang = 0;  // in the step that is being reported
-        bool film = false;               // a film exists
+        uint32_t leaving = 0;  // in the step that is being reported
+        bool film = false;     // a film exists
         std::vector<LeftDrop> gone;
         std::vector<HangingDrop> hanging;  // in that step
     };
@@ -81,7 +81,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     std::optional<ThesisTables> thesis;  // of thesis mode
     std::optional<PendantDrop> pendant;  // of the others
     // Buffers that change from step to step, besides those that are sorted.
-    auto remembered() { return std::array{&drop, &motion, &lean, &film, &painted, &point, &driven, &curved}; }
+    auto remembered() { return std::array{&drop, &motion, &film, &painted, &point, &driven}; }
 
     uint32_t count() const { return drops.count; }
     Status prepare(Device& on, std::span<const SkinBrim> along);
@@ -95,7 +95,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     void touchOthers(const FlowStep& f, const StepParams& s);
     Status moveDrops(const FlowStep& f, const StepParams& s);
     Status moveThesis(const FlowStep& f, const StepParams& s);
-    ThesisTables::Of forThesis() { return {skin, frames, driven, drop, motion, spreads, merged, drops, *grid}; }
+    ThesisTables::Of forThesis() { return {skin, frames, driven, drop, motion, merged, drops, *grid}; }
     void turnFrame(const dmat4& toWorld, double seconds, FlowStep& f);
     FlowStep stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const;
     void takeCounters();

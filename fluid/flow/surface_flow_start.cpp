@@ -149,17 +149,14 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&given, places * sizeof(uint32_t)),
                                  std::pair(&hostMoved, positions * sizeof(vec4)),
                                  std::pair(&driven, 2 * places * sizeof(vec4)),
-                                 std::pair(&curved, places * sizeof(float)),
                                  std::pair(&wanted, places * sizeof(uint32_t)),
                                  std::pair(&painted, triangles * sizeof(uint32_t)),
                                  std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
                                  std::pair(&footprint, under.triangle.size() * sizeof(uint32_t)),
                                  std::pair(&weight, under.weight.size() * sizeof(float)),
                                  std::pair(&drop, n * DROP_UINTS * sizeof(uint32_t)),
-                                 std::pair(&motion, 2 * n * sizeof(vec4)),
-                                 std::pair(&lean, n * sizeof(vec4)),
+                                 std::pair(&motion, MOTION_VECS * n * sizeof(vec4)),
                                  std::pair(&side, n * sizeof(vec4)),
-                                 std::pair(&spreads, n * sizeof(vec4)),
                                  std::pair(&chain, 2 * size_t{brims} * sizeof(uint32_t)),
                                  std::pair(&spill, size_t{brimPlaces} * sizeof(FlowBirth)),
                                  std::pair(&names, n * sizeof(float)),
@@ -167,7 +164,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&faces, n * sizeof(uint32_t)),
                                  std::pair(&reached, (REACHED_WORDS + 1) * sizeof(uint32_t)),
                                  std::pair(&into, n * sizeof(float)),
-                                 std::pair(&merged, n * sizeof(vec4)),
+                                 std::pair(&merged, 2 * n * sizeof(vec4)),
                                  std::pair(&shift, n * sizeof(vec4)),
                                  std::pair(&birth, n * sizeof(FlowBirth)),
                                  std::pair(&counter, FLOW_COUNTERS * sizeof(uint32_t)),
@@ -193,7 +190,10 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     on.writeAll<uint32_t>(given, mesh.given);
     uneven = unevenGrip(mesh.rest, params.unevenness);
     std::vector<vec4> usual(2 * places, vec4(0.0F));
-    for (size_t p = 0; p < places; ++p) usual[2 * p] = vec4(0.0F, 0.0F, 0.0F, uneven[p]);
+    for (size_t p = 0; p < places; ++p) {
+        usual[2 * p].w = uneven[p];
+        usual[2 * p + 1].w = DRIVE_STALE;
+    }
     on.writeAll<vec4>(driven, usual);
     on.writeAll<uint32_t>(begin, under.begin);
     on.writeAll<uint32_t>(footprint, under.triangle);

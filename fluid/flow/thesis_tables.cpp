@@ -176,9 +176,9 @@ Status ThesisTables::press(const Of& of, const FlowStep& f, StepParams s) {
     s.force =
         vec4(f.density, params_.restDensity, 1 / params_.reach, static_cast<float>(std::min(double{params_.viscosity}, 0.02 * h * h / dt)));
     const Buffer& neighbors = of.grid.neighbors();
-    density_.run(*device_, p, s, {&neighbors, &p.position, &p.velocity, &of.spread}, of.grid.pairThreads());
-    press_.run(*device_, p, s, {&neighbors, &p.position, &p.velocity, &of.spread, &of.merged}, of.grid.pairThreads());
-    device_->run(law_, t, {&p.id, &force_, &of.spread, &of.merged, &of.drop, &of.motion}, f.count);
+    density_.run(*device_, p, s, {&neighbors, &p.position, &p.velocity, &of.merged}, of.grid.pairThreads());
+    press_.run(*device_, p, s, {&neighbors, &p.position, &p.velocity, &of.merged}, of.grid.pairThreads());
+    device_->run(law_, t, {&p.id, &force_, &of.merged, &of.drop, &of.motion}, f.count);
     return ok();
 }
 

@@ -50,7 +50,7 @@ class ThesisTables {
     // Buffers of the flow, as in the kernels of shaders/flow; skin, basis and drive are those in space.
     struct Of {
         const Buffer &skin, &basis, &drive;
-        Buffer &drop, &motion, &spread, &merged;
+        Buffer &drop, &motion, &merged;
         Particles& particles;
         NeighborGrid& grid;
     };

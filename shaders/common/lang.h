@@ -1,7 +1,7 @@
 // The only file that depends on which compiler reads a kernel: C++ (8 particles in 8 lanes), OpenCL C 1.2 or GLSL 4.5.
 // `real` and `real3` hold values of the current particle: one float on a GPU, 8 floats (one lane for each particle) on the CPU.
-// ARGS(RO, RW) is a kernel's interface. Each row RO|RW(binding, BlockName, type, name) is a buffer; a comment gives its unit and meaning.
-// Bindings count from 1. BUFFERS follows it; functions that read a buffer come after BUFFERS and take GLOBAL(type, name).
+// ARGS(RO, RW) is a kernel's interface. Each row RO|RW(number, BlockName, type, name) is a buffer; a comment gives its unit and meaning.
+// Rows count from 1, to 8 at most: OpenGL guarantees no more buffers. BUFFERS follows it; functions that read a buffer come after BUFFERS and take GLOBAL(type, name).
 // The line above KERNEL gives the forms that the build compiles for the cpu (engine/compute/compile_kernels.cmake registers them):
 //   // cpu 1024                                one; a task of the thread pool runs 1024 threads
 //   // cpu 64: MATTER? PERIODIC? | THESIS      five: with and without each of two defines; or with a third alone
@@ -87,9 +87,9 @@ typedef float4 real4;
 #define GLOBAL(T, n)
 #define PASS(n)
 #define RO(b, N, T, n) \
-    layout(std430, binding = b) readonly buffer N { T n[]; };
+    layout(std430, binding = (b)-1) readonly buffer N { T n[]; };
 #define RW(b, N, T, n) \
-    layout(std430, binding = b) buffer N { T n[]; };
+    layout(std430, binding = (b)-1) buffer N { T n[]; };
 #define BUFFERS(P)                                                 \
     layout(local_size_x = LOCAL_SIZE) in;                          \
     layout(std140, binding = 0) uniform ParamBlock { P params_; }; \
@@ -109,6 +109,8 @@ typedef float4 real4;
     }
 #endif
 #if !defined(__cplusplus)  // on a GPU a lane is the particle itself
+// Whether a sum of squares is below `limit`, and not NaN: by its bits, since compilers for GPUs may take !(NaN < y) as NaN >= y.
+#define SQUARE_BELOW(x, limit) (FLOAT_BITS(x) < FLOAT_BITS(limit))
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))
 #define ANY_LANE(condition) (condition)
 #define NEIGHBOR_TYPE uint  // see fluid/grid/neighbors.h

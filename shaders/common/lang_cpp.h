@@ -148,11 +148,17 @@ INLINE void atomicMin(uint* x, uint v) {
     while (v < had && !__atomic_compare_exchange_n(x, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
     }
 }
+// A bit that is there is not written again: other threads would lose the cache line.
+INLINE uint atomicOr(uint* x, uint bits) {
+    const uint had = __atomic_load_n(x, __ATOMIC_RELAXED);
+    return (had & bits) == bits ? had : __atomic_fetch_or(x, bits, __ATOMIC_RELAXED);
+}
 INLINE void atomicMax(uint* p, uint v) {
     uint had = __atomic_load_n(p, __ATOMIC_RELAXED);
     while (had < v && !__atomic_compare_exchange_n(p, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
     }
 }
+#define SQUARE_BELOW(x, limit) (FLOAT_BITS(x) < FLOAT_BITS(limit))
 #define TO_INT(x) static_cast<int>(x)
 #define TO_UINT(x) static_cast<unsigned>(x)
 #define TO_FLOAT(x) static_cast<float>(x)
@@ -173,7 +179,7 @@ INLINE void atomicMax(uint* p, uint v) {
 #define RW_CAST(b, N, T, n) , static_cast<T*>(buffers_[(b)-1])
 #define BUFFERS(P)
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
-#define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
+#define ATOMIC_OR(x, v) atomicOr(&(x), v)
 #define ATOMIC_READ(x) __atomic_load_n(&(x), __ATOMIC_RELAXED)
 #define PREFETCH(x) __builtin_prefetch(&(x))
 #define ATOMIC_MIN(x, v) atomicMin(&(x), v)

@@ -7,7 +7,7 @@ FN void fetchDrops(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(vec4, motion) GLOB
     if (i + 8u < count) {
         uint slot = id[i + 8u];
         PREFETCH(drop[DROP_UINTS * slot]);
-        PREFETCH(motion[2u * slot]);
+        PREFETCH(motion[MOTION_VECS * slot]);
     }
     if (i + 4u < count) {
         uint t = drop[DROP_UINTS * id[i + 4u] + DROP_TRIANGLE] & DROP_NUMBER;

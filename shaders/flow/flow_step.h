@@ -13,6 +13,8 @@ CONSTANT(uint, DROP_B2, 2u);
 CONSTANT(uint, DROP_VOLUME, 3u);  // picolitres
 CONSTANT(uint, DROP_SHARE, 4u);  // float bits, 0 a drop, 1 part of a film
 CONSTANT(uint, DROP_UINTS, 5u);
+CONSTANT(uint, MOTION_VECS, 3u);  // of a drop, by id: see flow/place, flow/steer
+CONSTANT(float, DRIVE_STALE, 1.0e30f);  // in the place of a curvature: flow/drive has still to compute it
 CONSTANT(uint, DROP_LEFT, 0x80000000u);  // has let go, or run over an edge: the triangle is the last one
 CONSTANT(uint, DROP_FILM, 0x40000000u);  // part of a film: merges with no drop
 CONSTANT(uint, DROP_BRIM, 0x20000000u);  // part of a brim: stays. In a birth: the number is that of a brim's place, which gets the volume
@@ -96,9 +98,9 @@ STRUCT(FlowHanging) {
     vec4 up;        // xyz unit, the skin's mean normal; w 1/m, the skin's curvature
     vec4 pull;      // xyz m/s^2, what pulls at it; w: its share of the largest volume there
     uint volume;    // picolitres
+    uint count;     // of the first of the list: how many hang, which may be more than the list holds
     uint spare0;
     uint spare1;
-    uint spare2;
 };
 CONSTANT(float, CORNER_LEAVES, 0.125f);  // share of the cube of the receding angle where a drop's back becomes a corner: at half the angle
 CONSTANT(uint, PEARL_SHARE, 512u);  // volumes of a drop that it sheds in that of the drop: an eighth as wide

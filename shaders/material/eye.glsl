@@ -42,8 +42,8 @@ void shadeEye(vec2 uv, vec3 n, vec3 toEye, vec3 albedo, vec3 falling, float lit,
     // The white: subsurface scattering as skin, and wet.
     vec3 wide = clamp(vec3(0.16, 0.10, 0.07), 0.0, 0.97);
     float nl = dot(n, lamp);
-    vec3 white = vec3(texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.x)).r, texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.y)).r,
-                      texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.z)).r);
+    vec3 white = vec3(textureLod(diffusionMap, vec2(0.5 + 0.5 * nl, wide.x), 0.0).r, textureLod(diffusionMap, vec2(0.5 + 0.5 * nl, wide.y), 0.0).r,
+                      textureLod(diffusionMap, vec2(0.5 + 0.5 * nl, wide.z), 0.0).r);
     // Shadow of the upper lid and in the corners.
     float lids = smoothstep(-0.05, 0.42, at.y), corners = smoothstep(0.42, 0.92, abs(at.x));
     open *= mix(1.0, 0.30, lids) * mix(1.0, 0.3, corners);

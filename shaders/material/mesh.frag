@@ -33,7 +33,7 @@ void main() {
     vec3 toEye = normalize(frame.cameraPos.xyz - posWorld);
     vec3 n = normalize(normalWorld);
     if (!gl_FrontFacing) n = -n;
-    float open = texture(occlusion, gl_FragCoord.xy * frame.viewport.zw).r;
+    float open = textureLod(occlusion, gl_FragCoord.xy * frame.viewport.zw, 0.0).r;
     vec3 colourHere = baseColour;
     if (grain.x > 0.0) {
         vec4 g = grainAt(posOwn, grain.y, length(frame.cameraPos.xyz - posWorld) * frame.ray.x);

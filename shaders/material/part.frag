@@ -56,7 +56,7 @@ void main() {
     if (!gl_FrontFacing) n = -n;
     Tangents t = tangentsAt(posWorld, posUv, n);
     vec2 uv = posUv;
-    float open = texture(occlusion, gl_FragCoord.xy * frame.viewport.zw).r;
+    float open = textureLod(occlusion, gl_FragCoord.xy * frame.viewport.zw, 0.0).r;
 #if defined(BLENDED)
     if (opacity < 0.3) open = 1.0;  // it is known for the opaque surface behind
 #endif
@@ -74,7 +74,7 @@ void main() {
     uv = throughCornea(uv, toEye);
 #endif
     vec4 albedo = look(colourMap, uv, t, mapLod.x) * vec4(baseColour, opacity);
-    if (albedo.a < cutoff) discard;
+    bool cut = albedo.a < cutoff;  // at the end: textures and derivatives need the pixels beside
 #if defined(BLENDED)
     if (strand.x > 0.0) {
         vec2 hair = hairAt(posUv, strand);
@@ -213,4 +213,5 @@ void main() {
 #else
     colour = vec4(matte + shine, 1.0);
 #endif
+    if (cut) discard;
 }

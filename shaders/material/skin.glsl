@@ -21,8 +21,8 @@ vec3 reliefSlope(sampler2D map, vec2 uv, Tangents t, float stretch, float sizeLo
 vec3 spread(vec3 red, vec3 green, vec3 blue, vec3 lamp, float bend) {
     vec3 cosine = 0.5 + 0.5 * vec3(dot(red, lamp), dot(green, lamp), dot(blue, lamp));
     vec3 wide = clamp(scatterLength * bend, 0.0, 0.97) + 0.015;
-    return vec3(texture(diffusionMap, vec2(cosine.x, wide.x)).r, texture(diffusionMap, vec2(cosine.y, wide.y)).r,
-                texture(diffusionMap, vec2(cosine.z, wide.z)).r);
+    return vec3(textureLod(diffusionMap, vec2(cosine.x, wide.x), 0.0).r, textureLod(diffusionMap, vec2(cosine.y, wide.y), 0.0).r,
+                textureLod(diffusionMap, vec2(cosine.z, wide.z), 0.0).r);
 }
 
 // Specular reflection of skin: a broad lobe, and a sharper one where it is oily; both use one sample of the environment.

@@ -1,7 +1,7 @@
 // A surface that water has touched: darker where it is porous (see darkened()), and glossy while a film of water is on it.
 // Needs surface.glsl and noise.glsl. A host's own material may include it: docs/embedding.md.
-layout(std430, binding = 1) readonly buffer WetCells { int wetCells[]; };
-layout(std430, binding = 2) readonly buffer Wetness { float wetness[]; };
+layout(std430, binding = 0) readonly buffer WetCells { int wetCells[]; };
+layout(std430, binding = 1) readonly buffer Wetness { float wetness[]; };
 #include "shaders/common/lang.h"
 #include "shaders/fluid/solids/wet_cells.h"
 uniform mat4 wetFromWorld;  // world (m) -> cells

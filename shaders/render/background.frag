@@ -16,7 +16,7 @@ void main() {
     vec3 posWorld = frame.cameraPos.xyz + (frame.floorColour.w - frame.cameraPos.y) / ray.y * ray;
     float away = length(posWorld.xz - frame.floorFade.xy) / frame.floorFade.z;
     float near = exp(-0.22 * max(away - 0.9, 0.0) * max(away - 0.9, 0.0));
-    float open = texture(occlusion, gl_FragCoord.xy * frame.viewport.zw).r;
+    float open = textureLod(occlusion, gl_FragCoord.xy * frame.viewport.zw, 0.0).r;
     vec3 up = vec3(0.0, 1.0, 0.0);
     vec3 light = frame.lightColour.rgb * meshShadow(posWorld, up) * waterShadow(posWorld);
     Surface s = Surface(frame.floorColour.rgb, 0.55, 0.0, up, open);

@@ -25,9 +25,9 @@ float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
     float warped = exp(kWarp * clamp(at.z, 0.0, 1.0));
     float blocker, nearest;
-    vec2 narrow = texture(shadowSharp, at.xy).xy;
+    vec2 narrow = textureLod(shadowSharp, at.xy, 0.0).xy;
     float entered = narrow.x;
-    float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, kLevel, blocker);
+    float soft = litFraction(textureLod(shadowSoft, at.xy, 0.0).xy, warped, kLevel, blocker);
 #if defined(SKIN)
     // A shadow's edge is as wide as the key light's softbox makes it, and at least as the light spreads in skin.
     const float kTangent = 0.26, kLeast = 4.5e-3, kMost = 9.0e-3;  // of the softbox; m; the soft map has wider edges
@@ -35,7 +35,7 @@ float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
     vec2 sum = narrow;  // and the depth where light enters: the nearest around, since at an edge of the map the farthest is behind it
     for (int k = 0; k < 12; ++k) {  // on a disc, along a spiral of golden angles
         float turn = 2.39996 * float(k);
-        vec2 there = texture(shadowSharp, at.xy + vec2(cos(turn), sin(turn)) * (reach * sqrt((float(k) + 1.0) / 12.0))).xy;
+        vec2 there = textureLod(shadowSharp, at.xy + vec2(cos(turn), sin(turn)) * (reach * sqrt((float(k) + 1.0) / 12.0)), 0.0).xy;
         sum += there;
         entered = min(entered, there.x);
     }

@@ -10,7 +10,7 @@ vec3 waterShadow(vec3 posWorld) {
     vec4 clip = frame.waterProjection * vec4(posWorld, 1.0);
     vec3 at = clip.xyz * 0.5 + 0.5;
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return vec3(1.0);
-    vec4 water = texture(waterLight, at.xy);
+    vec4 water = textureLod(waterLight, at.xy, 0.0);
     if (frame.shadow.y > 1.5) {
         float inside = 0.5 - max(abs(at.x - 0.5), abs(at.y - 0.5)), texel = 1.0 / float(textureSize(waterLight, 0).x);
         return mix(vec3(1.0), water.rgb, smoothstep(2.0 * texel, 4.0 * texel, inside));

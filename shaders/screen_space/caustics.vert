@@ -11,6 +11,9 @@ void main() {
     vec4 own = texelFetch(flux, here, 0);
     gl_PointSize = 1.0;
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    light = vec3(0.0);
+    middle = vec2(0.0);
+    spread = 0.0;
     if (own.w == 0.0) return;
     middle = texelFetch(landed, here, 0).rg;
     spread = 1.0;

@@ -9,6 +9,7 @@ void main() {
     vec4 clip = frame.waterProjection * vec4(particle.xyz, 1.0);
     depth = clip.z * 0.5 + 0.5;
     inDisc = vec2(0.0);
+    gl_PointSize = 1.0;
     if (asPoint()) {
         gl_PointSize = clipRadius * pointTarget.x;
     } else {

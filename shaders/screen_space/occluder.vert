@@ -4,6 +4,7 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 void main() {
+    gl_PointSize = 1.0;
     Splat s = splatOf(particle);
     vec3 c = s.centre;
 #if defined(ELLIPSOIDS)

@@ -46,8 +46,8 @@ const float represents = 1.0;
 float represents = detail > 0.0 ? representedBy(particle, texelFetch(ids, row()).r) : 1.0;
 #endif
 float drawnRadius(vec4 p) { return ownRadius(p) * sqrt(represents); }
-// Also for NaN, for a free slot and for a body sample.
-bool lost(vec4 p) { return beyond() || p.w < 0.0 || represents <= 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
+// Also for NaN (by its bits: see lang.h), for a free slot and for a body sample.
+bool lost(vec4 p) { return beyond() || p.w < 0.0 || represents <= 0.0 || floatBitsToUint(dot(p.xyz, p.xyz)) >= floatBitsToUint(1.0e12); }
 
 // What is drawn, in view space: the points p with (p - centre)^T squares^-1 (p - centre) < 1.
 struct Splat {

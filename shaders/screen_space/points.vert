@@ -11,6 +11,7 @@ uniform float fullSpeed;  // m/s, upper end of the colour map
 flat out vec4 centreView;  // w: radius
 flat out vec3 baseColour;
 void main() {
+    gl_PointSize = 1.0;
     vec4 velocity = texelFetch(velocities, row()), absorption = alike == 1 ? vec4(0.0) : texelFetch(absorptions, row());
     uint id = texelFetch(ids, row()).r;
     centreView = vec4((frame.view * vec4(particle.xyz, 1.0)).xyz, drawnRadius(particle));

@@ -31,7 +31,7 @@ float waterAt(vec2 uv) {
 #if defined(NORMALS)
     return textureLod(normals, uv, 0.0).w;
 #else
-    return texture(thickness, uv).r;
+    return textureLod(thickness, uv, 0.0).r;
 #endif
 }
 // The share of the pixel that is covered: 0 outside of the outline, which is where the water is as thick as a ball of its volume near its rim.
@@ -40,7 +40,7 @@ float coverage(float water) {
     return smoothstep(0.0, 0.5 * radius, water);
 #else
     const float kOutline = 0.3;  // spacings
-    float thick = texture(sharp, gl_FragCoord.xy * frame.viewport.zw).r - kOutline * spacing;
+    float thick = textureLod(sharp, gl_FragCoord.xy * frame.viewport.zw, 0.0).r - kOutline * spacing;
     return clamp(0.5 + thick / max(length(vec2(dFdx(thick), dFdy(thick))), 1.0e-6), 0.0, 1.0);
 #endif
 }
@@ -140,8 +140,8 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
 const float kOtherIndex = 1.47;
 vec2 otherLiquid(float depth) {
     vec2 texel = 1.0 / vec2(textureSize(thickness, 0)), uv = gl_FragCoord.xy * frame.viewport.zw, pixel = pixelSize(depth) * frame.viewport.xy * texel;
-    vec2 ahead = vec2(texture(thickness, uv + vec2(texel.x, 0.0)).y, texture(thickness, uv + vec2(0.0, texel.y)).y);
-    vec2 back = vec2(texture(thickness, uv - vec2(texel.x, 0.0)).y, texture(thickness, uv - vec2(0.0, texel.y)).y);
+    vec2 ahead = vec2(textureLod(thickness, uv + vec2(texel.x, 0.0), 0.0).y, textureLod(thickness, uv + vec2(0.0, texel.y), 0.0).y);
+    vec2 back = vec2(textureLod(thickness, uv - vec2(texel.x, 0.0), 0.0).y, textureLod(thickness, uv - vec2(0.0, texel.y), 0.0).y);
     vec2 slope = (ahead - back) / (2.0 * pixel);
     return slope / sqrt(1.0 + 0.25 * dot(slope, slope));  // nowhere steeper than 63 degrees
 }
@@ -179,7 +179,7 @@ vec3 shafts(vec3 dir, float through, vec3 absorbed, vec3 reduced) {
 }
 
 // For an eye inside the water: the point where the ray through a pixel leaves it, m, view space.
-vec3 wayOut(vec2 pixel) { return normalize(sightWay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
+vec3 wayOut(vec2 pixel) { return normalize(sightWay(pixel)) * textureLod(thickness, pixel * frame.viewport.zw, 0.0).r; }
 // The picture for an eye in the water: the scene in the water directly, the scene above through Snell's window, and around the window what
 // the surface mirrors. `scene`: m along the ray; `passed`: the share of light that comes as far as the surface; `deep`: the colour of very deep
 // water.
@@ -241,7 +241,7 @@ void main() {
     float through = water;
     vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
 #if defined(INK)
-    vec4 fades = texture(depths, gl_FragCoord.xy * frame.viewport.zw);
+    vec4 fades = textureLod(depths, gl_FragCoord.xy * frame.viewport.zw, 0.0);
     vec2 lens = otherLiquid(depth);
     bent = normalize(bent + vec3((kOtherIndex / refractiveIndex - 1.0) * lens, 0.0));
 #endif
@@ -253,11 +253,11 @@ void main() {
     for (int k = 0; k < 3; ++k) {
         vec2 uv = pixelOf(p + way * stretch) * frame.viewport.zw;
         vec2 inside = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
-        if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else an object in front of the water would be visible in it
-            back = texture(sceneColour, inside).rgb;
+        if (depthOfWindow(textureLod(sceneDepth, inside, 0.0).r) > depth) {  // else an object in front of the water would be visible in it
+            back = textureLod(sceneColour, inside, 0.0).rgb;
             through = mix(through, waterAt(inside), 0.5);
 #if defined(INK)
-            fades = mix(fades, texture(depths, inside), 0.5);
+            fades = mix(fades, textureLod(depths, inside, 0.0), 0.5);
 #endif
             break;
         }

@@ -27,7 +27,7 @@ void main() {
     if (what == 1)
         colour.rgb = abs(directionToWorld(normalize(cross(side(here, ivec2(1, 0)), side(here, ivec2(0, 1))))));
     else if (what == 4)
-        colour.rgb = ramp(texture(thickness, gl_FragCoord.xy * frame.viewport.zw).r / fullThickness);
+        colour.rgb = ramp(textureLod(thickness, gl_FragCoord.xy * frame.viewport.zw, 0.0).r / fullThickness);
     else
         colour.rgb = vec3(1.0 - clamp((depth - depths.x) / max(depths.y - depths.x, 1.0e-6), 0.0, 1.0));
 }

@@ -12,6 +12,7 @@ flat out vec4 centreView;  // w: radius, of an ellipsoid that of the ball of its
 flat out mat3 shapeView;  // 1/m^2: 1 on the surface
 #endif
 void main() {
+    gl_PointSize = 1.0;
     Splat s = splatOf(particle);
     float body = 1.0 - leaving(particle);
     s.squares *= body * body;

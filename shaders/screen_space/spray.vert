@@ -36,6 +36,17 @@ vec3 chosen(uvec3 v) {
 void main() {
     float gone = leaving(particle);
     gl_Position = kNowhere;
+    gl_PointSize = 1.0;
+#if defined(INK)
+    ink = vec4(0.0);
+#endif
+    centreView = alongView = vec3(0.0);
+    haze = lit = 0.0;
+    reach = vec2(0.0);
+    for (int k = 0; k < kDroplets; ++k) {
+        droplet[k] = vec4(0.0);
+        share[k] = 0.0;
+    }
     if (lost(particle) || gone <= 0.0) return;
     vec3 c = (frame.view * vec4(particle.xyz, 1.0)).xyz, v = vec3(0.0);
     if (shutter > 0.0) v = mat3(frame.view) * texelFetch(velocities, row()).xyz;

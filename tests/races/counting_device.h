@@ -1,6 +1,7 @@
 // CountingDevice: a Device that counts what it runs: kernels, their variants, dispatches and work items.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <span>
 #include <string>
@@ -26,7 +27,13 @@ class CountingDevice final : public Device {
         return made;
     }
     void release(uint64_t handle, size_t bytes) override { of_.release(handle, bytes); }
-    void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override { of_.write(to, bytes, offset); }
+    // For oclgrind 21.10, a write of a part makes all after the part uninitialised: the whole buffer is written.
+    void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override {
+        if (backend() != Backend::cl || bytes.size() == to.bytes()) return of_.write(to, bytes, offset);
+        std::vector<std::byte> all = of_.readAll<std::byte>(to, to.bytes());
+        std::ranges::copy(bytes, all.begin() + static_cast<std::ptrdiff_t>(offset));
+        of_.write(to, all, 0);
+    }
     void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override { of_.read(from, bytes, offset); }
     void fill(Buffer& to, uint32_t word) override {
         if (backend() != Backend::cl) return of_.fill(to, word);

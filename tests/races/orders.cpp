@@ -1,6 +1,10 @@
 #include "tests/races/orders.h"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <filesystem>
+#include <regex>
 #include <utility>
 
 #include "engine/core/assert.h"
@@ -76,6 +80,61 @@ Result<ShaderFiles> shadersIn(Order order) {
           replace(text, kOpencl.group, "#define GROUP_ID " + openclGroup)})
         if (!done) return done.error();
     files.add("shaders/common/lang.h", std::move(text));
+    return files;
+}
+
+namespace {
+
+// Definitions of min, max and clamp for both languages, of the types that kernels use.
+std::string otherMinAndMax(NanHabit habit) {
+    std::string text =
+        "\n#if defined(__OPENCL_C_VERSION__)\n#define FREE static inline __attribute__((overloadable))\n#elif !defined(__cplusplus)\n"
+        "#define FREE\n#endif\n#if !defined(__cplusplus)\n";
+    for (const auto& [name, less] : {std::pair("Min", "<"), std::pair("Max", ">")}) {
+        const std::string nan = habit == NanHabit::spreads ? "(FLOAT_BITS(a) & 0x7FFFFFFFu) > 0x7F800000u ? a : " : "";
+        text += fmt::format("FREE float free{0}(float a, float b) {{ return {2}a {1} b ? a : b; }}\n", name, less, nan);
+        for (const char* type : {"int", "uint"})
+            text += fmt::format("FREE {2} free{0}({2} a, {2} b) {{ return a {1} b ? a : b; }}\n", name, less, type);
+        text += fmt::format(
+            "FREE vec2 free{0}(vec2 a, vec2 b) {{ return vec2(free{0}(a.x, b.x), free{0}(a.y, b.y)); }}\n"
+            "FREE vec3 free{0}(vec3 a, vec3 b) {{ return vec3(free{0}(a.x, b.x), free{0}(a.y, b.y), free{0}(a.z, b.z)); }}\n",
+            name);
+    }
+    for (const char* type : {"float", "int", "uint"})
+        text += fmt::format("FREE {0} freeClamp({0} a, {0} low, {0} high) {{ return freeMin(freeMax(a, low), high); }}\n", type);
+    return text + "#undef min\n#undef max\n#undef clamp\n#define min freeMin\n#define max freeMax\n#define clamp freeClamp\n#endif\n";
+}
+
+}  // namespace
+
+Result<ShaderFiles> shadersWith(NanHabit habit) {
+    ShaderFiles files = ShaderFiles::developer();
+    if (habit != NanHabit::inverts) {
+        const Result<std::string> lang = files.load("shaders/common/lang.h");
+        if (!lang) return lang.error();
+        files.add("shaders/common/lang.h", *lang + otherMinAndMax(habit));
+        return files;
+    }
+    // One comparison of operands that may hold calls, but no other logic.
+    const std::string operand = "((?:[^()&|<>=!?;]|\\((?:[^()]|\\([^()]*\\))*\\))+)";
+    const std::regex negated("!\\(" + operand + " (<|>|<=|>=) " + operand + "\\)");
+    size_t inverted = 0;
+    const std::filesystem::path root = RIVULET_SOURCE_DIR;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(root / "shaders")) {
+        const std::string path = std::filesystem::relative(file.path(), root).string();
+        if (!file.is_regular_file() || path.starts_with("shaders/common")) continue;
+        const Result<std::string> text = files.load(path);
+        if (!text) return text.error();
+        std::string made;
+        auto rest = text->cbegin();
+        for (std::smatch m; std::regex_search(rest, text->cend(), m, negated); rest = m[0].second, ++inverted) {
+            made.append(rest, m[0].first);
+            made += fmt::format("({} {} {})", m[1].str(), m[2] == "<" ? ">=" : m[2] == ">" ? "<=" : m[2] == "<=" ? ">" : "<", m[3].str());
+        }
+        made.append(rest, text->cend());
+        if (made != *text) files.add(path, std::move(made));
+    }
+    if (inverted < 20) return failed("few shaders have comparisons of the form !(a < b); adapt tests/races/orders.cpp");
     return files;
 }
 

@@ -14,6 +14,11 @@ enum class Order { backwards, interleaved };
 // Shaders whose lang.h numbers work items and groups in that order. Error (failed): lang.h has other lines than this expects.
 Result<ShaderFiles> shadersIn(Order order);
 
+// What compilers may make of NaN: min, max and clamp that return their second operand if either is NaN (as x86 does), or NaN; and !(a < b)
+// as a >= b, as Mesa's optimiser has it. Without NaN all are the same.
+enum class NanHabit { second, spreads, inverts };
+Result<ShaderFiles> shadersWith(NanHabit habit);
+
 // A cpu whose kernels run one work item after the other in that order, on one thread.
 std::unique_ptr<CpuDevice> cpuIn(Order order);
 

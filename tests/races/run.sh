@@ -76,7 +76,9 @@ END
     local status=$?
     grep -E 'FAILED|kernels in' "$work/validation.log"
     grep -q BestPractices "$work/layer.log" || { echo "the validation layer reported nothing: is it there?"; status=1; }
-    if grep -E 'SYNC-|VUID-' "$work/layer.log" >"$work/broken.txt"; then
+    # Mesa 22.3's zink's own, in draws without colour targets: it sets the blending of none, and where a pipeline has it fixed.
+    local own='VUID-vkCmdSetColorBlendEquationEXT-attachmentCount-arraylength|VUID-vkCmdDrawMultiEXT-None-02859.*DYNAMIC_STATE_COLOR_BLEND'
+    if grep -E 'SYNC-|VUID-' "$work/layer.log" | grep -vE "$own" >"$work/broken.txt"; then
         grep -oE '(SYNC|VUID)-[A-Za-z0-9-]+' "$work/broken.txt" | sort | uniq -c
         status=1
     fi

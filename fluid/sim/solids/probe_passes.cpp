@@ -133,7 +133,7 @@ Result<ProbePasses> ProbePasses::create(Device& device, const FluidParams& param
     const size_t slots = world.particles.count;
     for (const auto& [buffer, bytes] :
          {std::pair(&made.probes_, rows.size() * sizeof(DeviceProbe)),
-          std::pair(&made.rows_, rows.size() * PROBE_THREADS * sizeof(ProbeRow)), std::pair(&made.loads_, 3 * slots * sizeof(vec4)),
+          std::pair(&made.rows_, rows.size() * PROBE_THREADS * sizeof(ProbeRow)), std::pair(&made.carried_, 6 * slots * sizeof(vec4)),
           std::pair(&made.before_, slots * sizeof(vec4))}) {
         Result<Buffer> room = device.allocate(bytes);
         if (!room) return room.error();
@@ -166,22 +166,26 @@ Status ProbePasses::findKernels() {
         std::vector<Define> defines;
         bool wanted;
     };
-    const char *atDistance = "fluid/solids/probe_walls", *response = "fluid/solids/probe_response";
+    const char *atDistance = "fluid/solids/probe_walls", *response = "fluid/solids/probe_response", *carry = "fluid/solids/probe_carry";
     const bool still = wantsStill() && walled_;
-    std::vector<Define> deforming = with("FRICTION", true, "MOVING", true);
+    std::vector<Define> deforming = with("FRICTION", true, "MOVING", false);
     deforming.insert(deforming.begin(), {"DEFORMING", "1"});
     for (const Wanted& w : {Wanted{&pressure_.still, atDistance, with("PRESSURE", field_, "FIELD", false), still},
                             Wanted{&pressure_.rigid, atDistance, with("PRESSURE", true, "MOVING", false), moving},
-                            Wanted{&friction_.still, atDistance, with("FRICTION", field_, "FIELD", true), still},
-                            Wanted{&friction_.rigid, atDistance, with("FRICTION", true, "MOVING", true), wants(ProbeOn::rigid)},
+                            Wanted{&friction_.still, atDistance, with("FRICTION", field_, "FIELD", false), still},
+                            Wanted{&friction_.rigid, atDistance, with("FRICTION", true, "MOVING", false), wants(ProbeOn::rigid)},
                             Wanted{&friction_.deforming, atDistance, deforming, wants(ProbeOn::deforming)},
-                            Wanted{&adhesion_.still, atDistance, with("ADHESION", field_, "FIELD", true), still},
+                            Wanted{&adhesion_.still, atDistance, with("ADHESION", field_, "FIELD", false), still},
+                            Wanted{&carryPressure_, carry, with("PRESSURE", false, "", false), still || moving},
+                            Wanted{&carryFriction_, carry, with("FRICTION", false, "", true), still || moving},
+                            Wanted{&carryAdhesion_, carry, with("ADHESION", false, "", true), still},
+                            Wanted{&carryContact_, carry, with("", false, "", true), contact || moving},
                             Wanted{&integrated_, response, with("", false, "", true), walls},
                             Wanted{&finished_, response, with("FROM_POSITIONS", false, "", true), walls},
                             Wanted{&predicted_, response, with("PREDICTS", false, "", true), walls},
                             Wanted{&arrived_, response, with("ARRIVED", false, "", true), walls},
-                            Wanted{&contact_, "fluid/solids/probe_contact", with("", false, "", true), contact},
-                            Wanted{&contactMoving_, "fluid/solids/probe_contact", with("MOVING", false, "", true), moving},
+                            Wanted{&contact_, "fluid/solids/probe_contact", {}, contact},
+                            Wanted{&contactMoving_, "fluid/solids/probe_contact", with("MOVING", false, "", false), moving},
                             Wanted{&body_, "fluid/solids/probe_body", {}, body}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device_->kernel(w.path, w.defines);
@@ -243,23 +247,26 @@ void ProbePasses::reset() {
     totals_->angular = totals_->impulse;
 }
 
-void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, const Buffer& position, const Buffer& first,
-                             const Buffer& second, bool matter, bool movingToo, const Buffer* start) {
-    if (!walled_) return;
+void ProbePasses::carry(const Kernel& kernel, const StepParams& step, const Buffer& into, std::initializer_list<const Buffer*> from,
+                        bool matter) {
+    std::vector<const Buffer*> buffers = {&world_.grid.cellStart(), &into};
+    buffers.insert(buffers.end(), from);
+    if (matter && world_.traits.matter) buffers.push_back(&world_.particles.matter);
+    device_->dispatch(kernel, std::as_bytes(std::span(&step, 1)), buffers, step.count);
+}
+
+void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, const Buffer& position, bool movingToo) {
     const SolidPasses& solids = world_.solids;
-    const Buffer& cells = world_.grid.cellStart();
     const auto dispatch = [&](const Kernel& kernel, const StepParams& s, std::initializer_list<const Buffer*> walls) {
-        std::vector<const Buffer*> buffers = {&cells, &position, &probes_, &rows_, &first, &second};
+        std::vector<const Buffer*> buffers = {&world_.grid.cellStart(), &position, &probes_, &rows_, &carried_};
         for (const Buffer* wall : walls)
             if (wall != nullptr) buffers.push_back(wall);
-        if (start != nullptr) buffers.push_back(start);
-        if (matter && world_.traits.matter) buffers.push_back(&world_.particles.matter);
         device_->dispatch(kernel, std::as_bytes(std::span(&s, 1)), buffers, PROBE_THREADS);
     };
     if (wantsStill()) {
         if (field_) {
             const SolidPasses::FieldView f = solids.stillField();
-            dispatch(kernels.still, step, {&solids.planes(), f.block, f.distance, f.normal});
+            dispatch(kernels.still, step, {f.block, f.distance, f.normal});
         } else {
             dispatch(kernels.still, step, {&solids.planes()});
         }
@@ -276,35 +283,41 @@ void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, 
     }
 }
 
-bool ProbePasses::wantsPressure() const { return walled_ && (wantsStill() || wants(ProbeOn::rigid) || wants(ProbeOn::deforming)); }
+bool ProbePasses::wantsDistance() const { return walled_ && (wantsStill() || wants(ProbeOn::rigid) || wants(ProbeOn::deforming)); }
 
 void ProbePasses::pressure(const StepParams& step, const Buffer& home, const Buffer& start, const Buffer& position,
                            const Buffer& multiplier, float scale) {
-    if (!wantsPressure()) return;
+    if (!wantsDistance()) return;
     StepParams s = step;
     s.force = vec4(scale, 0.0F, 0.0F, 0.0F);
     const Particles& p = world_.particles;
-    load_.run(*device_, p, s, {&world_.grid.neighbors(), &home, &position, &p.nearWalls, &loads_, &multiplier}, world_.grid.pairThreads());
-    atDistance(pressure_, step, position, p.nearWalls, loads_, false, true, &start);
+    load_.run(*device_, p, s, {&world_.grid.neighbors(), &home, &position, &p.nearWalls, &carried_, &multiplier},
+              world_.grid.pairThreads());
+    carry(carryPressure_, step, carried_, {&p.nearWalls, &start}, false);
+    atDistance(pressure_, step, position, true);
 }
 
 void ProbePasses::solved(const StepParams& step, const Buffer& solve) {
-    if (!wantsPressure()) return;
+    if (!wantsDistance()) return;
     const Particles& p = world_.particles;
     StepParams s = step;
     s.force = vec4(step.mass, 0.0F, 0.0F, 0.0F);
-    loadHeld_.run(*device_, p, s, {&world_.grid.neighbors(), &p.position, &p.position, &p.nearWalls, &loads_, &solve, &p.velocity},
+    loadHeld_.run(*device_, p, s, {&world_.grid.neighbors(), &p.position, &p.position, &p.nearWalls, &carried_, &solve, &p.velocity},
                   world_.grid.pairThreads());
-    atDistance(pressure_, step, p.position, p.nearWalls, loads_, false, true, &p.position);
+    carry(carryPressure_, step, carried_, {&p.nearWalls, &p.position}, false);
+    atDistance(pressure_, step, p.position, true);
 }
 
 void ProbePasses::friction(const StepParams& step, const Buffer& friction, const Buffer& velocity) {
-    atDistance(friction_, step, world_.particles.position, friction, velocity, true, true);
+    if (!wantsDistance()) return;
+    carry(carryFriction_, step, carried_, {&friction, &velocity}, true);
+    atDistance(friction_, step, world_.particles.position, true);
 }
 
 void ProbePasses::adhesion(const StepParams& step) {
-    const Particles& p = world_.particles;
-    atDistance(adhesion_, step, p.position, p.nearWalls, p.velocity, true, false);
+    if (!walled_ || !wantsStill()) return;
+    carry(carryAdhesion_, step, carried_, {}, true);
+    atDistance(adhesion_, step, world_.particles.position, false);
 }
 
 void ProbePasses::respond(const Kernel& kernel, const StepParams& step, const Buffer& position, const Buffer& velocity, const Buffer& last,
@@ -346,9 +359,9 @@ void ProbePasses::contact(const StepParams& step, ProbeOn on, uint32_t index, co
     const Particles& p = world_.particles;
     StepParams s = step;
     s.force = vec4(0.0F, static_cast<float>(on), static_cast<float>(index), 0.0F);
-    std::vector<const Buffer*> buffers = {&world_.grid.cellStart(), &before_,  &probes_, &rows_, &p.positionNext,
-                                          &p.velocityNext,          &distance, &normal,  &block};
-    if (world_.traits.matter) buffers.push_back(&p.matter);
+    carry(carryContact_, step, before_, {&p.velocityNext}, true);
+    std::vector<const Buffer*> buffers = {&world_.grid.cellStart(), &before_, &probes_, &rows_, &p.positionNext, &distance, &block};
+    if (on == ProbeOn::still) buffers.push_back(&normal);
     device_->dispatch(on == ProbeOn::still ? contact_ : contactMoving_, std::as_bytes(std::span(&s, 1)), buffers, PROBE_THREADS);
 }
 

@@ -80,7 +80,7 @@ class ProbePasses final : public WallLoads {
     explicit ProbePasses(const World& world) : world_(world) {}
     bool wants(ProbeOn on) const { return wanted_[static_cast<size_t>(on)]; }
     bool wantsStill() const { return wants(ProbeOn::box) || wants(ProbeOn::plane) || wants(ProbeOn::still); }
-    bool wantsPressure() const;
+    bool wantsDistance() const;  // any wall that acts at a distance
     bool wantsWalls() const { return wants(ProbeOn::box) || wants(ProbeOn::plane); }
     Status findKernels();
     // Which of probe_walls: its form without MOVING, and those for moving solids. Only friction depends on the velocity of a wall, so only
@@ -89,8 +89,9 @@ class ProbePasses final : public WallLoads {
         Kernel still, rigid, deforming;
         bool readsDisplacement = false;
     };
-    void atDistance(const AtDistance& kernels, const StepParams& step, const Buffer& position, const Buffer& first, const Buffer& second,
-                    bool matter, bool movingToo, const Buffer* start = nullptr);
+    void atDistance(const AtDistance& kernels, const StepParams& step, const Buffer& position, bool movingToo);
+    // What probe_walls and probe_contact need of each particle, put together in `into`.
+    void carry(const Kernel& kernel, const StepParams& step, const Buffer& into, std::initializer_list<const Buffer*> from, bool matter);
     void respond(const Kernel& kernel, const StepParams& step, const Buffer& position, const Buffer& velocity, const Buffer& last,
                  const Buffer* matter);
 
@@ -100,9 +101,10 @@ class ProbePasses final : public WallLoads {
     bool walled_ = true, field_ = false, cubic_ = false;
     std::shared_ptr<const std::vector<Spec>> specs_;
     std::shared_ptr<Totals> totals_;
-    Buffer probes_, rows_, loads_, before_;
+    Buffer probes_, rows_, carried_, before_;  // carried_, before_: see fluid/solids/probe_carry
     PairKernel load_, loadHeld_;
     AtDistance pressure_, friction_, adhesion_;
+    Kernel carryPressure_, carryFriction_, carryAdhesion_, carryContact_;
     Kernel integrated_, finished_, predicted_, arrived_, contact_, contactMoving_, body_;
 };
 

@@ -315,6 +315,10 @@ void SolidPasses::writePlanes() {
         list.emplace_back(values[0], values[1], 0.0F, 0.0F);
     }
     device_->writeAll<vec4>(planes_, list);
+    if (static_.field == nullptr || list.empty()) return;
+    std::vector<FieldParams> behind(planeSolids_.size());
+    for (size_t k = 0; k < behind.size(); ++k) behind[k].origin = list[2 * k];
+    device_->write(staticBlock_, std::as_bytes(std::span(behind)), sizeof(FieldParams));
 }
 
 Status SolidPasses::advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to) {

@@ -150,8 +150,8 @@ class SolidPasses {
     Field static_;
     bool staticAdded_ = true;  // as Moving::added
     FieldParams block_{};
-    Buffer staticBlock_;
-    float blockDt_ = 0;  // staticBlock_ was written for this step length
+    Buffer staticBlock_;  // then the planes, see fluid/solids/probe_walls
+    float blockDt_ = 0;   // staticBlock_ was written for this step length
     std::vector<Moving> rigid_, deforming_;
     std::vector<Pose> poses_;
     double frameSeconds_ = 0;

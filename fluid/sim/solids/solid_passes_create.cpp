@@ -82,7 +82,7 @@ Status SolidPasses::replace(const Solids& solids, std::span<const Pose> poses, c
         next.static_.field = solids.field;
         if (!keepsStill)
             if (Status done = next.static_.upload(*device_); !done) return done;
-        Result<Buffer> block = device_->allocate(sizeof(FieldParams));
+        Result<Buffer> block = device_->allocate((1 + next.planeSolids_.size()) * sizeof(FieldParams));
         if (!block) return block.error();
         next.staticBlock_ = std::move(*block);
     }

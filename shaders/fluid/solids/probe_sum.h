@@ -33,7 +33,7 @@ FN float probeShare(GLOBAL(DeviceProbe, probes) uint k, uint on, uint index, vec
 
 // `impulse`: of the wall on the particle, N s; it counts only if it is finite.
 #define PROBE_ADD(on_, index_, impulse_, x_, n_)                                                                  \
-    if (dot(impulse_, impulse_) < 1.0e30f) {                                                                      \
+    if (SQUARE_BELOW(dot(impulse_, impulse_), 1.0e30f)) {                                                         \
         for (uint k_ = 0u; k_ < probes[0].count; ++k_) {                                                          \
             float share_ = probeShare(PASS(probes) k_, on_, index_, x_, n_, PARAMS.spacing);                      \
             if (share_ > 0.0f) {                                                                                  \

@@ -116,7 +116,7 @@ void SceneSolids::placeModels(const SceneFile& scene, double time) {
 void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world) {
     const std::vector<Pose> poses = world.drawnPoses();
     for (size_t k = 0; k < rigid_.size(); ++k) nodeOf(rigid_[k].model).local = matrixOf(poses[k]);
-    for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(world.bodies()[k].pose);
+    for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(world.expectedBodies()[k].pose);
     for (const Deforming& d : deforming_) bendNode(d, d.field->positions());
     placeModels(scene, world.time());
     wetNodes(world.wetness().surface.get());

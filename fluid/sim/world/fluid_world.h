@@ -164,8 +164,12 @@ class FluidWorld {
     // and waits.
     std::vector<float> pressures() const;
     const std::vector<Pose>& poses() const;  // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
+    // Of the last substep, until the next step. Wait on a GPU while it moves the bodies (BodyHost::isFree).
     const std::vector<BodyState>& bodies() const;
-    const std::vector<BodyLoad>& bodyLoads() const;  // of the last substep
+    const std::vector<BodyLoad>& bodyLoads() const;
+    // As bodies(), for pictures: never waits. While a GPU moves them, from their states of two or three frames earlier and their mean
+    // acceleration then.
+    const std::vector<BodyState>& expectedBodies() const;
     std::vector<Pose> drawnPoses() const;            // the same, as ParticleView::drawn
     uint64_t voxelsRewritten() const;                // of deforming solids, since the start
     Device& device() const;

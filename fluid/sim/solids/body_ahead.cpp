@@ -78,13 +78,26 @@ void BodyPasses::settleNear(const vec3& p, float spacing) {
 
 void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
     if (!mayBeAhead_ || !any() || sampleCount_ == 0) return;
-    if (!late_) late_ = std::make_shared<Late>(Late{{bodies_, states_, time_}, std::vector<uint32_t>(bodies_.size())});
+    if (!late_) {
+        late_ = std::make_shared<Late>(Late{BodyForecast(bodies_), std::vector<uint32_t>(bodies_.size())});
+        pushed_.assign(bodies_.size(), dvec3(0.0));
+        pushedFrom_ = time_;
+    }
     std::vector<vec4> balls;
     const auto areFree = [&] {
         balls = late_->forecast.balls(time_, time_ + seconds, glm::length(gravity));
         return host_.isFree(host_.self, balls, seconds);
     };
-    if (!ahead_) late_->forecast.arrived(states_, time_);
+    if (!ahead_) {
+        const double passed = time_ - pushedFrom_;
+        std::vector<vec3> accelerations(bodies_.size(), vec3(0.0F));
+        for (size_t k = 0; k < bodies_.size(); ++k)
+            if (const double mass = bodies_[k].shape.mass; mass > 0)
+                accelerations[k] = gravity + (passed > 0 ? vec3(pushed_[k] / (mass * passed)) : vec3(0.0F));
+        late_->forecast.set(states_, accelerations, time_);
+        std::ranges::fill(pushed_, dvec3(0.0));
+        pushedFrom_ = time_;
+    }
     const bool faulty = ahead_ && std::ranges::any_of(late_->faults, [](uint32_t f) { return f != 0; });
     if (exact || faulty) settle();
     for (size_t k = 0; k < bodies_.size(); ++k) {

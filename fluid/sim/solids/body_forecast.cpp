@@ -5,10 +5,16 @@
 
 namespace rivulet {
 
-BodyForecast::BodyForecast(std::span<const Body> bodies, std::span<const BodyState> states, double time)
-    : states_(states.begin(), states.end()), acceleration_(states.size(), vec3(0.0F)), trust_(states.size(), 1.0F), time_(time) {
+BodyForecast::BodyForecast(std::span<const Body> bodies)
+    : states_(bodies.size()), acceleration_(bodies.size(), vec3(0.0F)), trust_(bodies.size(), 1.0F) {
     moves_.reserve(bodies.size());
     for (const Body& b : bodies) moves_.push_back(b.shape.mass > 0);
+}
+
+void BodyForecast::set(std::span<const BodyState> states, std::span<const vec3> accelerations, double time) {
+    states_.assign(states.begin(), states.end());
+    acceleration_.assign(accelerations.begin(), accelerations.end());
+    time_ = time;
 }
 
 bool BodyForecast::arrived(std::span<const BodyState> states, double time) {
@@ -17,7 +23,6 @@ bool BodyForecast::arrived(std::span<const BodyState> states, double time) {
         acceleration_[k] = (states[k].velocity - states_[k].velocity) / static_cast<float>(time - time_);
     states_.assign(states.begin(), states.end());
     time_ = time;
-    measured_ = true;
     return true;
 }
 
@@ -36,9 +41,7 @@ std::vector<BodyState> BodyForecast::at(double time) const {
 }
 
 float BodyForecast::reserve(size_t body, float gravity) const {
-    // Before the first measurement, what moves it is not known at all: the water may push a light body as hard as gravity several times.
-    const float seen = measured_ ? std::max(glm::length(acceleration_[body]), gravity) : 2 * gravity;
-    return kReserve * trust_[body] * seen;
+    return kReserve * trust_[body] * std::max({glm::length(acceleration_[body]), gravity, kLeast});
 }
 
 std::vector<vec4> BodyForecast::balls(double from, double to, float gravity) const {

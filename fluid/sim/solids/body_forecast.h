@@ -10,14 +10,15 @@ namespace rivulet {
 
 class BodyForecast {
   public:
-    // `states` at `time` (s).
-    BodyForecast(std::span<const Body> bodies, std::span<const BodyState> states, double time);
-    // Their states at a later time. Returns false, and ignores them, if later ones are known already.
+    explicit BodyForecast(std::span<const Body> bodies);
+    // Their states at `time` (s), and the accelerations (m/s^2) that they had lately, contacts left out.
+    void set(std::span<const BodyState> states, std::span<const vec3> accelerations, double time);
+    // Their states at a later time, when nothing has touched them since. Returns false, and ignores them, if later ones are known already.
     bool arrived(std::span<const BodyState> states, double time);
-    // Where they are expected at `time`: by their velocity, spin and mean acceleration between the last two arrivals.
+    // Where they are expected at `time`: by their velocity, spin and mean acceleration before the last arrival.
     std::vector<BodyState> at(double time) const;
     // xyz (m), w (m): from `from` to `to` (s) the centre of mass stays within w of xyz, unless the mean acceleration since the last arrival
-    // differs from the one before by more than kReserve times the larger of that and `gravity` (m/s^2).
+    // differs from the one before by more than kReserve times the largest of that, `gravity` and kLeast (m/s^2).
     std::vector<vec4> balls(double from, double to, float gravity) const;
     // m/s^2: how much faster than expected the body's velocity may have changed.
     float reserve(size_t body, float gravity) const;
@@ -26,13 +27,13 @@ class BodyForecast {
     double time() const { return time_; }  // s, of the last arrival
 
     static constexpr float kReserve = 2;
+    static constexpr float kLeast = 1;  // m/s^2
 
   private:
     std::vector<BodyState> states_;
-    std::vector<vec3> acceleration_;  // m/s^2, mean between the last two arrivals
+    std::vector<vec3> acceleration_;  // m/s^2, mean before the last arrival
     std::vector<float> trust_;        // factor of kReserve
     std::vector<bool> moves_;         // false: has no mass
-    bool measured_ = false;           // acceleration_
     double time_ = 0;
 };
 

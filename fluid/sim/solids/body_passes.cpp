@@ -390,6 +390,8 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
         }
         loads_[k] = filter_.transfer(k, force, torque, wet / static_cast<double>(bodies_[k].shape.samples.size()), seconds);
     }
+    if (late_)
+        for (size_t k = 0; k < bodies; ++k) pushed_[k] += loads_[k].force * seconds;
     std::vector<BodyState> next = states_;
     host_.advance(host_.self, loads_, vec3(step.gravity), seconds, next);
     for (size_t k = 0; k < bodies; ++k) {

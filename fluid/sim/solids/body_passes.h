@@ -151,6 +151,8 @@ class BodyPasses {
     bool mayBeAhead_ = false;              // a GPU, and a host that allows it
     bool ahead_ = false, settled_ = true;  // the GPU moves them; states_ and loads_ are exact nevertheless
     double time_ = 0;                      // s, moved so far
+    std::vector<dvec3> pushed_;            // N s, of each body by loads since pushedFrom_ (s), while the host moved them
+    double pushedFrom_ = 0;
     uint64_t waits_ = 0, strays_ = 0;
     bool friction_ = false;
 };

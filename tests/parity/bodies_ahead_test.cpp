@@ -32,9 +32,9 @@ class AdvanceBodies : public testing::TestWithParam<const char*> {};
 
 float distance(const quat& a, const quat& b) { return std::min(glm::length(a - b), glm::length(a + b)); }
 
-// Loads of the same size as a body's weight and inertia, with and without added mass, in steps of up to a turn: 40 steps differ from those of
-// FreeBodies and BodyLoads, which are in double, by rounding. A load that is not finite moves nothing; a body without mass does not move, and
-// one that the water does not meet falls freely.
+// Loads of the same size as a body's weight and inertia, with and without added mass, in steps of up to a turn: 40 steps differ from those
+// of FreeBodies and BodyLoads, which are in double, by rounding. A load that is not finite moves nothing; a body without mass does not
+// move, and one that the water does not meet falls freely.
 TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
     Result<TestGpu> gpu = deviceOf(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -123,8 +123,8 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
             if (n + 1 == kSteps) EXPECT_EQ((d.faults & BODY_STRAYED) != 0, strays) << k;
         }
     }
-    std::printf("%s: place %.1e m, speed %.1e m/s, spin %.1e of it, rotation %.1e (fast %.1e), pending %.1e of it\n", GetParam(), way, speed, spin,
-                turn, fastTurn, pending);
+    std::printf("%s: place %.1e m, speed %.1e m/s, spin %.1e of it, rotation %.1e (fast %.1e), pending %.1e of it\n", GetParam(), way,
+                speed, spin, turn, fastTurn, pending);
     EXPECT_LT(way, 2.0e-6);
     EXPECT_LT(speed, 2.0e-5);
     EXPECT_LT(spin, 2.0e-4);
@@ -216,8 +216,8 @@ TEST_P(BodiesAhead, ABobbingBallIsWhereTheHostMovesIt) {
     EXPECT_GT(apart(exact->bodies()[0], solids.bodies[0].state), 0.1);
 }
 
-// Water hits a box off its centre, without gravity: the momentum of both stays. The blow, which nothing announced, throws the box further than
-// was foreseen: that is counted, and the box is where the host has it.
+// Water hits a box off its centre, without gravity: the momentum of both stays. The blow, which nothing announced, throws the box further
+// than was foreseen: that is counted, and the box is where the host has it.
 TEST_P(BodiesAhead, MomentumStaysAndABlowIsNoticed) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -258,8 +258,8 @@ TEST_P(BodiesAhead, MomentumStaysAndABlowIsNoticed) {
     }
 }
 
-// A ball is thrown at a wall, which Bullet knows. Its path is that of the host, the contact included, and it is never deeper in the wall. The
-// GPU moves it far from the wall; a hand that holds it ends that, too.
+// A ball is thrown at a wall, which Bullet knows. Its path is that of the host, the contact included, and it is never deeper in the wall.
+// The GPU moves it far from the wall; a hand that holds it ends that, too.
 TEST_P(BodiesAhead, AWallIsTouchedAsTheHostTouchesIt) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;

@@ -82,8 +82,8 @@ class BodyPasses {
     // Makes states() and loads() exact: waits if isAhead().
     void settle();
     void settleNear(const vec3& p, float spacing);  // only if a body may be at `p` (m)
-    uint64_t waits() const { return waits_; }    // of beginFrame and advance on a GPU, so far
-    uint64_t strays() const { return strays_; }  // bodies that moved further than foreseen while they were free: on a GPU, late
+    uint64_t waits() const { return waits_; }       // of beginFrame and advance on a GPU, so far
+    uint64_t strays() const { return strays_; }     // bodies that moved further than foreseen while they were free: on a GPU, late
     // The body for which the host last returned a state that is not finite; the body has kept its state.
     std::optional<size_t> misled() const { return misled_; }
     // Back to t = 0.
@@ -120,9 +120,9 @@ class BodyPasses {
         BodyForecast forecast;
         std::vector<uint32_t> faults;  // of each body, that arrived since they were last looked at
     };
-    void writeStates();   // to the device
+    void writeStates();  // to the device
     void writeMotions(std::span<const vec4> balls);
-    void stay();          // the host moves the bodies from states() on
+    void stay();                                  // the host moves the bodies from states() on
     void take(std::span<const DeviceBody> rows);  // the states and loads there
 
     Device* device_ = nullptr;

@@ -188,7 +188,7 @@ class FluidWorld {
     Status restore(WorldState& state);
     // Continues from another world with the same box and spacing, with solids at `poses` and with `shapes` (as FluidInputs; all of them).
     // It takes over the time, the particles except those inside a solid here, the bodies if they are the same, and the foam if it has as
-    // many slots. Counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box or spacing, liquids, too few slots.
+    // many slots. Counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box, spacing, liquids; few slots.
     Status continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 
   private:

@@ -183,7 +183,7 @@ FluidStats statsOf(FluidWorld& world) {
 double apart(const BodyState& a, const BodyState& b) { return double{glm::length(a.pose.position - b.pose.position)}; }
 
 // A ball falls into a pool and bobs. Before it touches water the GPU moves it as the host does, but for rounding; then it stays within what
-// rounding makes of splashing water. The host waits in each substep, the GPU never.
+// rounding makes of splashing water. The host waits in each substep, the GPU hardly ever.
 TEST_P(BodiesAhead, ABobbingBallIsWhereTheHostMovesIt) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -204,7 +204,7 @@ TEST_P(BodiesAhead, ABobbingBallIsWhereTheHostMovesIt) {
         if (frame < 7) falling = std::max(falling, off);  // 6 cm
         late = std::max(late, off);
     }
-    EXPECT_EQ(statsOf(*ahead).bodyWaits, 0U);
+    EXPECT_LE(statsOf(*ahead).bodyWaits, 30U) << "0, if states are one frame late; else half a second for the picture, after the blow";
     EXPECT_EQ(ahead->stats().bodyStrays, 0U);
     EXPECT_EQ(statsOf(*exact).bodyWaits, substeps);
     const double swimming = apart(ahead->bodies()[0], exact->bodies()[0]);

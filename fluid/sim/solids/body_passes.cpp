@@ -79,6 +79,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         b.free_ = std::make_shared<FreeBodies>(bodies);
         b.host_ = b.free_->host();
     }
+    b.spacing_ = params.spacing;
     b.mayBeAhead_ = device.backend() != Backend::cpu && b.host_.isFree != nullptr;
     if (bodies.empty() && b.sampleCount_ == 0) return b;  // only bodies that the water does not meet can be added
     b.sampleCount_ = std::max(b.sampleCount_, 1U);        // what follows has room for them

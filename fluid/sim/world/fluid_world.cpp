@@ -34,7 +34,7 @@ const std::vector<BodyState>& FluidWorld::bodies() const {
     impl_->bodies.settle();
     return impl_->bodies.states();
 }
-const std::vector<BodyState>& FluidWorld::expectedBodies() const { return impl_->bodies.states(); }
+const std::vector<BodyState>& FluidWorld::expectedBodies() const { return impl_->bodies.shown(); }
 const std::vector<BodyLoad>& FluidWorld::bodyLoads() const {
     impl_->bodies.settle();
     return impl_->bodies.loads();

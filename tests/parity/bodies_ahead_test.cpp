@@ -133,6 +133,33 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
     EXPECT_LT(pending, 1.0e-4);
     EXPECT_EQ(states[0].pose.position, bodies[0].state.pose.position) << "without mass";
 }
+// A finite load that would make a body impossibly fast: it keeps its state, and that is noted.
+TEST_P(AdvanceBodies, KeepsTheStateOfABodyWhoseNextOneIsImpossible) {
+    Result<TestGpu> gpu = deviceOf(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    Device& device = *gpu->device;
+    const Result<Kernel> kernel = device.kernel("fluid/solids/advance_bodies");
+    ASSERT_TRUE(kernel) << kernel.error().message;
+    std::vector<LoadRow> partial(LOAD_THREADS);
+    partial[3].force.x = 1.0e16F;
+    DeviceBody row{};
+    row.position = vec4(1, 2, 3, 0);
+    row.rotation = vec4(0, 0, 0, 1);
+    const BodyMotion motion{vec4(1, 1, 1, 1), vec4(1, 2, 3, 1), 0.0F, 10.0F, 1, 0};
+    Result<Buffer> sums = device.allocate(partial.size() * sizeof(LoadRow)), moved = device.allocate(sizeof row),
+                   by = device.allocate(sizeof motion);
+    ASSERT_TRUE(sums && moved && by);
+    device.writeAll<LoadRow>(*sums, partial);
+    device.writeAll<DeviceBody>(*moved, std::span(&row, 1));
+    device.writeAll<BodyMotion>(*by, std::span(&motion, 1));
+    StepParams step{};
+    step.dt = 1.0e-3F;
+    device.run(*kernel, step, {&*sums, &*by, &*moved}, 1);
+    const DeviceBody got = device.readAll<DeviceBody>(*moved, 1)[0];
+    EXPECT_EQ(vec3(got.position), vec3(1, 2, 3));
+    EXPECT_EQ(vec3(got.velocity), vec3(0.0F));
+    EXPECT_EQ(got.faults, BODY_MISLED);
+}
 INSTANTIATE_TEST_SUITE_P(Devices, AdvanceBodies, testing::Values("cpu", "cl", "gl"), [](const auto& row) { return row.param; });
 
 // ---- worlds ----

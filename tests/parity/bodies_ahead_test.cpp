@@ -1,6 +1,7 @@
 // Bodies that a GPU moves while they are free: they move as the host moves them, and nothing waits.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -306,7 +306,7 @@ using namespace rivulet;
 using namespace rivulet::capi;
 
 rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why) {
-    return with(world, why, Needs::memory, [&]() -> Status {
+    return with(world, why, Needs::device, [&]() -> Status {
         const std::vector<BodyState>& bodies = world->world->bodies();
         if (states == nullptr) return badInput("states is NULL");
         if (count != bodies.size()) return badInput(fmt::format("count is {}, and there are {} bodies", count, bodies.size()));
@@ -335,7 +335,7 @@ rivulet_status rivulet_world_remove_body(rivulet_world* world, uint32_t id, rivu
 
 rivulet_status rivulet_world_body(const rivulet_world* world, uint32_t id, int32_t* inside, rivulet_body_state* state,
                                   rivulet_body_load* load, rivulet_error* why) {
-    return with(world, why, Needs::memory, [&]() -> Status {
+    return with(world, why, Needs::device, [&]() -> Status {
         const Result<std::optional<size_t>> place = world->bodies.placeOf(*world->world, id);
         if (!place) return place.error();
         if (inside != nullptr) *inside = *place ? 1 : 0;

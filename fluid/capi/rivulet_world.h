@@ -171,7 +171,8 @@ typedef struct rivulet_particles {
 } rivulet_particles;
 RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why);
 
-/* The states of the bodies now, in the order of rivulet_world_body_ids; `count` must be their number. */
+/* The states of the bodies now, in the order of rivulet_world_body_ids; `count` must be their number. Without rivulet_body_host a GPU moves
+   the bodies; then this call and rivulet_world_body wait for it, the steps do not. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
 /* Bodies that come and go while the world runs, within the memory of fluid.bodies.maxSamples. Ids are as those of walls; those of
    rivulet_world_options have their index. A body with a mesh is made ready beside the frames, on one core. It enters the world at the first

@@ -255,6 +255,64 @@ struct BulletSolids::Impl {
         b.applyCentralForce(to(-gravity * static_cast<float>(b.getMass())));  // at its middle: else it would hang from the grip and swing
         b.setAngularVelocity(b.getAngularVelocity() * std::exp(-kCalm * static_cast<float>(seconds)));
     }
+    // Whether a sphere may touch a mesh, a plane or the box, which move as far as they do until they are at their targets.
+    bool mayTouch(const LayersParams& layers, const vec3& centre, float radius) {
+        struct AnyTriangle : btTriangleCallback {
+            bool found = false;
+            void processTriangle(btVector3*, int, int) override { found = true; }
+        };
+        const btVector3 around(radius, radius, radius);
+        for (const auto& solid : all) {
+            const LayersParams own = layersOf(*solid);
+            if (own != kBox && !own.meet(layers)) continue;
+            if (solid->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE) {
+                const auto& plane = static_cast<const btStaticPlaneShape&>(*solid->getCollisionShape());
+                if (plane.getPlaneNormal().dot(to(centre)) - plane.getPlaneConstant() < radius) return true;
+                continue;
+            }
+            const auto& mesh = static_cast<const btBvhTriangleMeshShape&>(*solid->getCollisionShape());
+            Pose pose = from(solid->getWorldTransform());
+            float way = 0;
+            if (const auto at = std::ranges::find(moving, solid.get()); at != moving.end()) {
+                const Pose& end = target[static_cast<size_t>(at - moving.begin())];
+                pose = now[static_cast<size_t>(at - moving.begin())];
+                const float path = glm::length(end.position - pose.position);
+                const float turn = 2 * std::acos(std::min(std::abs(glm::dot(pose.rotation, end.rotation)), 1.0F));
+                way = path + turn * (glm::length(centre - pose.position) + path);
+            }
+            const btVector3 place = to(pose.toOwn(centre)), reach = around + btVector3(way, way, way);
+            AnyTriangle any;
+            mesh.processAllTriangles(&any, place - reach, place + reach);
+            if (any.found) return true;
+        }
+        return false;
+    }
+    // `balls` as of BodyHost::isFree.
+    bool isFree(std::span<const vec4> balls) {
+        if (hand) return false;
+        // Bullet acts on bodies that are nearer to each other than a fiftieth of their size.
+        constexpr float kNear = 1.02F;
+        std::vector<float> radii;
+        radii.reserve(bodies.size());
+        for (size_t k = 0; k < bodies.size(); ++k)
+            radii.push_back(balls[k].w + kNear * static_cast<float>(bodies[k]->getCollisionShape()->getAngularMotionDisc()));
+        for (size_t k = 0; k < bodies.size(); ++k) {
+            if (!(bodies[k]->getMass() > 0)) continue;
+            const LayersParams layers = layersOf(*bodies[k]);
+            if (mayTouch(layers, vec3(balls[k]), radii[k])) return false;
+            for (size_t other = 0; other < bodies.size(); ++other)
+                if (other != k && layers.meet(layersOf(*bodies[other])) &&
+                    glm::length(vec3(balls[k]) - vec3(balls[other])) < radii[k] + radii[other])
+                    return false;
+        }
+        return true;
+    }
+    // The moving solids go on, as in advance().
+    void passed(double seconds) {
+        const double share = left > 0 ? std::min(seconds / left, 1.0) : 1.0;
+        left = std::max(left - seconds, 0.0);
+        for (size_t k = 0; k < moving.size(); ++k) now[k] = between(now[k], target[k], share);
+    }
     void advance(std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
         put(states);
         for (size_t k = 0; k < bodies.size(); ++k) {
@@ -356,6 +414,8 @@ BodyHost BulletSolids::host() {
         static_cast<Impl*>(self)->advance(loads, gravity, seconds, states);
     };
     h.reset = [](void* self, std::span<const BodyState> states) { static_cast<Impl*>(self)->put(states); };
+    h.isFree = [](void* self, std::span<const vec4> balls, double) { return static_cast<Impl*>(self)->isFree(balls); };
+    h.passed = [](void* self, double seconds) { static_cast<Impl*>(self)->passed(seconds); };
     // Poses of the moving solids: current and at the end of the step.
     h.save = [](void* self) {
         const Impl& w = *static_cast<Impl*>(self);

@@ -22,7 +22,9 @@ constexpr Part kParts[] = {
     {"collision with meshes", "no collider has triangles", "fluid/solids/collide", ""},
     {"moving meshes", "no collider moves or deforms", "fluid/solids/near_walls_moving|fluid/forces/wall_friction_moving", ""},
     {"floating bodies", "the scene has none",
-     "fluid/solids/place_samples|fluid/solids/push_samples|fluid/solids/sum_loads|fluid/solids/index_samples", ""},
+     "fluid/solids/place_samples|fluid/solids/push_samples|fluid/solids/sum_loads|fluid/solids/advance_bodies|"
+     "fluid/solids/index_samples",
+     ""},
     {"masses and densities per particle", "there is one liquid and no body", "", "MATTER"},
     {"periodic axes", "no axis of the box is periodic", "fluid/world/wrap", "PERIODIC"},
     {"surface tension", "fluid.forces.tension and adhesion are 0", "fluid/forces/cohesion", ""},

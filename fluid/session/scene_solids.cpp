@@ -116,7 +116,7 @@ void SceneSolids::placeModels(const SceneFile& scene, double time) {
 void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world) {
     const std::vector<Pose> poses = world.drawnPoses();
     for (size_t k = 0; k < rigid_.size(); ++k) nodeOf(rigid_[k].model).local = matrixOf(poses[k]);
-    for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(world.bodies()[k].pose);
+    for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(world.expectedBodies()[k].pose);
     for (const Deforming& d : deforming_) bendNode(d, d.field->positions());
     placeModels(scene, world.time());
     wetNodes(world.wetness().surface.get());
@@ -150,9 +150,10 @@ bool SceneSolids::fits(const RecordedFrame& frame) const {
     return frame.places.size() == recordedPlaces() && frame.corners.size() == recordedCorners();
 }
 
-void SceneSolids::placesInto(RecordedFrame& frame) const {
+void SceneSolids::placesInto(RecordedFrame& frame, std::span<const BodyState> bodies) const {
     for (const Rigid& r : rigid_) frame.places.push_back(nodeOf(r.model).local);
-    for (const size_t node : bodyNodes_) frame.places.push_back(nodes_.nodes()[node].local);
+    for (size_t k = 0; k < bodyNodes_.size(); ++k)
+        frame.places.push_back(bodies.empty() ? nodes_.nodes()[bodyNodes_[k]].local : matrixOf(bodies[k].pose));
     for (const Deforming& d : deforming_)
         frame.corners.insert(frame.corners.end(), d.field->positions().begin(), d.field->positions().end());
 }

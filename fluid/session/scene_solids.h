@@ -90,7 +90,8 @@ class SceneSolids {
     // Nodes go where `world` has its solids.
     void placeNodes(const SceneFile& scene, const FluidWorld& world);
     // Or where a recorded frame has them: those places, and how many a frame must have.
-    void placesInto(RecordedFrame& frame) const;
+    // `bodies`: their states; empty: as the nodes show them, which on a GPU may be expected ones.
+    void placesInto(RecordedFrame& frame, std::span<const BodyState> bodies) const;
     void placeNodes(const SceneFile& scene, const RecordedFrame& frame);
     bool fits(const RecordedFrame& frame) const;
     size_t recordedPlaces() const { return rigid_.size() + bodyNodes_.size(); }

@@ -88,7 +88,10 @@ class Session {
     Status replayed() const { return replay_ ? replay_->status() : ok(); }            // Error: the last frame is damaged
     void seek(size_t frame) { replay_->seek(frame); }                                 // while replaying
     double time() const { return replay_ ? replay_->shown().time : world_->time(); }  // s simulated, of what is shown
-    void placesInto(RecordedFrame& frame) const { solids_.placesInto(frame); }        // places of moving solids
+    // Places of moving solids; waits for those of bodies.
+    void placesInto(RecordedFrame& frame) const {
+        solids_.placesInto(frame, replaying() != nullptr ? std::span<const BodyState>() : world().bodies());
+    }
 
     // The world and the angles of spinning solids. Error: as FluidWorld::restore; nothing has changed then.
     void save(WorldState& state);

@@ -72,6 +72,12 @@ struct BodyHost {
     // body is the last of the next states. `index`: of the removed one among the states until now. If one throws, nothing changes.
     void (*added)(void* self, uint32_t id, const Body& body) = nullptr;
     void (*removed)(void* self, uint32_t id, size_t index) = nullptr;
+    // On a GPU a step waits for the loads before each call of advance. With these two functions (both, or neither) it does not while bodies
+    // move freely: then the GPU moves them as FreeBodies does, and the host learns of it later. isFree, called once a frame: true if no
+    // body is held by the host or can touch anything but fluid in the next `seconds`, while its centre of mass stays in its ball (xyz m, w
+    // m, the radius). Then instead of advance, `passed` is called for each substep. Not called on the cpu.
+    bool (*isFree)(void* self, std::span<const vec4> balls, double seconds) = nullptr;
+    void (*passed)(void* self, double seconds) = nullptr;
 };
 
 // A host for worlds where bodies touch nothing but fluid: rigid motion, symplectic Euler, momentum and angular momentum kept.
@@ -105,6 +111,7 @@ class BodyLoads {
     BodyLoad transfer(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds);
     void restore(std::span<const BodyLoad> last);  // what transfer returned last, of each
     void reset();
+    double added(size_t body) const { return own_[body].added; }  // the fictitious mass of a body that is wet all over, over its mass
 
   private:
     struct Own {

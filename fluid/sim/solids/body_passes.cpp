@@ -72,11 +72,15 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         return badInput("the host of the bodies has one of the functions advance and reset: give it both, or none");
     if ((host.added == nullptr) != (host.removed == nullptr))
         return badInput("the host of the bodies has one of the functions added and removed: give it both, or none");
+    if ((host.isFree == nullptr) != (host.passed == nullptr))
+        return badInput("the host of the bodies has one of the functions isFree and passed: give it both, or none");
     b.host_ = host;
     if (host.advance == nullptr) {
         b.free_ = std::make_shared<FreeBodies>(bodies);
         b.host_ = b.free_->host();
     }
+    b.spacing_ = params.spacing;
+    b.mayBeAhead_ = device.backend() != Backend::cpu && b.host_.isFree != nullptr;
     if (bodies.empty() && b.sampleCount_ == 0) return b;  // only bodies that the water does not meet can be added
     b.sampleCount_ = std::max(b.sampleCount_, 1U);        // what follows has room for them
     b.friction_ = methodOf(params).doesViscosity;
@@ -100,6 +104,11 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
+    }
+    if (b.mayBeAhead_) {
+        Result<Kernel> found = device.kernel("fluid/solids/advance_bodies");
+        if (!found) return found.error();
+        b.advance_ = *found;
     }
     return b;
 }
@@ -135,8 +144,11 @@ Status BodyPasses::makeRoom(size_t bodies) {
     if (!rows) return rows.error();
     Result<Buffer> on = device_->allocate(bodies * sizeof(DeviceBody));
     if (!on) return on.error();
+    Result<Buffer> motions = device_->allocate(mayBeAhead_ ? bodies * sizeof(BodyMotion) : 0);
+    if (!motions) return motions.error();
     rows_ = std::move(*rows);
     deviceBodies_ = std::move(*on);
+    motions_ = std::move(*motions);
     room_ = bodies;
     return ok();
 }
@@ -223,6 +235,7 @@ Status BodyPasses::add(const Body& body, uint32_t id, const FluidParams& params)
     host_.added(host_.self, id, body);
     filter_ = std::move(filter);
     first_ = std::move(moved);
+    stay();
     append(std::move(copy), id, fits ? at : held, std::move(volumes));
     upload();
     return ok();
@@ -231,6 +244,7 @@ Status BodyPasses::add(const Body& body, uint32_t id, const FluidParams& params)
 Status BodyPasses::remove(size_t body) {
     if (host_.removed == nullptr) return badInput("the host of the bodies has no function removed: it cannot learn that a body is gone");
     host_.removed(host_.self, ids_[body], body);
+    stay();
     const auto drop = [at = static_cast<std::ptrdiff_t>(body)](auto& all) { all.erase(all.begin() + at); };
     drop(bodies_);
     drop(volumes_);
@@ -304,23 +318,18 @@ bool BodyPasses::movedBy(size_t body, const Pose& from, float way) const {
 
 float BodyPasses::fastest() const {
     float speed = 0;
-    for (size_t k = 0; k < states_.size(); ++k)
-        if (bodies_[k].meetsWater) speed = std::max(speed, glm::length(states_[k].velocity) + glm::length(states_[k].spin) * reach_[k]);
+    for (size_t k = 0; k < states_.size(); ++k) {
+        if (!bodies_[k].meetsWater) continue;
+        float own = glm::length(states_[k].velocity) + glm::length(states_[k].spin) * reach_[k];
+        if (isAhead()) own += late_->forecast.reserve(k, 0.0F) * static_cast<float>(time_ - late_->forecast.time());
+        speed = std::max(speed, own);
+    }
     return speed;
 }
 
 void BodyPasses::place(const StepParams& step, Particles& particles) {
     if (sampleCount_ == 0) return;
-    for (size_t k = 0; k < states_.size(); ++k) {
-        const BodyState& s = states_[k];
-        const quat& q = s.pose.rotation;
-        DeviceBody& d = uploaded_[k];
-        d.position = vec4(s.pose.position, 0.0F);
-        d.rotation = vec4(q.x, q.y, q.z, q.w);
-        d.velocity = vec4(s.velocity, 0.0F);
-        d.spin = vec4(s.spin, 0.0F);
-    }
-    if (any()) device_->write(deviceBodies_, std::as_bytes(std::span(uploaded_)));
+    if (!ahead_) writeStates();
     device_->run(place_, step, {&particles.id, &own_, &deviceBodies_, &arm_, &particles.positionNext, &particles.velocityNext},
                  step.awakeSlots);
 }
@@ -351,11 +360,20 @@ void BodyPasses::push(const StepParams& step, const NeighborGrid& grid, Particle
 
 void BodyPasses::advance(const StepParams& step, Particles& particles, double seconds) {
     if (!any()) return;
+    time_ += seconds;
     const size_t bodies = bodies_.size();
     const bool meets = anyMeets();
     if (meets)
         device_->run(sumLoads_, step, {&slotOf_, &particles.acceleration, &wet_, &arm_, &deviceBodies_, &rows_},
                      static_cast<uint32_t>(bodies) * LOAD_THREADS);
+    if (ahead_) {
+        device_->run(advance_, step, {&rows_, &motions_, &deviceBodies_}, static_cast<uint32_t>(bodies));
+        settled_ = false;
+        host_.passed(host_.self, seconds);
+        states_ = late_->forecast.at(time_);
+        return;
+    }
+    if (meets && device_->backend() != Backend::cpu) ++waits_;
     const std::vector<LoadRow> rows = meets ? device_->readAll<LoadRow>(rows_, bodies * LOAD_THREADS) : std::vector<LoadRow>();
     for (size_t k = 0; k < bodies; ++k) {
         if (!bodies_[k].meetsWater) continue;
@@ -373,6 +391,8 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
         }
         loads_[k] = filter_.transfer(k, force, torque, wet / static_cast<double>(bodies_[k].shape.samples.size()), seconds);
     }
+    if (late_)
+        for (size_t k = 0; k < bodies; ++k) pushed_[k] += loads_[k].force * seconds;
     std::vector<BodyState> next = states_;
     host_.advance(host_.self, loads_, vec3(step.gravity), seconds, next);
     for (size_t k = 0; k < bodies; ++k) {
@@ -394,6 +414,7 @@ void BodyPasses::reset() {
     for (size_t k = 0; k < bodies_.size(); ++k) states_[k] = bodies_[k].state;
     std::fill(loads_.begin(), loads_.end(), BodyLoad{});
     filter_.reset();
+    stay();
     if (any()) host_.reset(host_.self, states_);
 }
 
@@ -477,6 +498,7 @@ Status BodyPasses::restore(const Saved& saved) {
     states_ = saved.states;
     loads_ = saved.loads;
     filter_.restore(loads_);
+    stay();
     if (first_ != saved.first) {
         first_ = saved.first;
         upload();

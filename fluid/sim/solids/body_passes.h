@@ -9,6 +9,7 @@
 #include "engine/compute/device.h"
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/solids/bodies.h"
+#include "fluid/sim/solids/body_forecast.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_state.h"
 #include "shaders/fluid/solids/body_state.h"
@@ -49,6 +50,7 @@ class BodyPasses {
     const std::vector<vec4>& matter() const { return matterRows_; }
     std::vector<vec4> matter(std::span<const uint32_t> first) const;  // where a saved state has them
 
+    // As far as the host knows them: with isAhead(), where they are expected. settle() makes them exact.
     const std::vector<BodyState>& states() const { return states_; }
     std::vector<Pose> starts() const;                        // at t = 0
     float reach(size_t body) const { return reach_[body]; }  // m, from the centre of mass to the farthest sample
@@ -70,8 +72,20 @@ class BodyPasses {
         const Buffer *slotOf, *own, *arm, *bodies;
     };
     Samples samples() const { return {&slotOf_, &own_, &arm_, &deviceBodies_}; }
-    // Sums the forces, waits for them (some KB: on a GPU one round trip per substep), and calls the host to move the bodies.
+    // A frame of up to `seconds` begins. On a GPU it decides whether the GPU moves the bodies (BodyHost::isFree); `exact`: not, since
+    // something else needs their states in each substep. Waits once if only their exact states can tell.
+    void beginFrame(const vec3& gravity, double seconds, bool exact);
+    // Sums the forces and moves the bodies: on the GPU, or it waits for the forces (some KB, one round trip) and calls the host.
     void advance(const StepParams& step, Particles& particles, double seconds);
+    void endFrame();
+    bool isAhead() const { return ahead_ && !settled_; }  // the GPU has moved them, and states() and loads() are not exact
+    // Makes states() and loads() exact: waits if isAhead().
+    void settle();
+    // For pictures: states(), which are settled if a body has lately moved otherwise than expected.
+    const std::vector<BodyState>& shown();
+    void settleNear(const vec3& p, float spacing);  // only if a body may be at `p` (m)
+    uint64_t waits() const { return waits_; }       // of beginFrame and advance on a GPU, so far
+    uint64_t strays() const { return strays_; }     // bodies that moved further than foreseen while they were free: on a GPU, late
     // The body for which the host last returned a state that is not finite; the body has kept its state.
     std::optional<size_t> misled() const { return misled_; }
     // Back to t = 0.
@@ -103,6 +117,20 @@ class BodyPasses {
     void fillMatter(std::span<const uint32_t> first, std::span<vec4> rows) const;
     void append(Body body, uint32_t id, uint32_t first, std::vector<float> volumes);  // allocates nothing after reserve()
     void reserve(size_t bodies);
+    // States that arrive late.
+    struct Late {
+        BodyForecast forecast;
+        std::vector<uint32_t> faults;  // of each body, that arrived since they were last looked at
+        float most = 0;                // m, how far a body may be from where it is expected
+        std::vector<float> reach;      // m, of each body
+        double restlessUntil = -1;     // s: until then they may move otherwise than expected
+        // They were expected there at `time`, and are there: `scale` times as far away as they would be in a picture.
+        void compare(std::span<const BodyState> expected, std::span<const BodyState> states, double time, float scale);
+    };
+    void writeStates();  // to the device
+    void writeMotions(std::span<const vec4> balls);
+    void stay();                                  // the host moves the bodies from states() on
+    void take(std::span<const DeviceBody> rows);  // the states and loads there
 
     Device* device_ = nullptr;
     std::vector<Body> bodies_;
@@ -122,9 +150,20 @@ class BodyPasses {
     std::vector<DeviceBody> uploaded_;
     std::vector<vec4> ownRows_, matterRows_;  // of own_; matter()
     size_t room_ = 0;                         // bodies that there is memory for
-    Buffer own_, arm_, slotOf_, wet_, rows_, deviceBodies_;
-    Kernel place_, index_, wetSamples_, push_, sumLoads_;
+    Buffer own_, arm_, slotOf_, wet_, rows_, deviceBodies_, motions_;
+    Kernel place_, index_, wetSamples_, push_, sumLoads_, advance_;
+    std::vector<BodyMotion> motionRows_;
+    // On a GPU: what is known of bodies that it moves. Replaced where reads in flight must no longer arrive.
+    std::shared_ptr<Late> late_;
+    bool mayBeAhead_ = false;              // a GPU, and a host that allows it
+    bool ahead_ = false, settled_ = true;  // the GPU moves them; states_ and loads_ are exact nevertheless
+    double time_ = 0;                      // s, moved so far
+    std::vector<dvec3> pushed_;            // N s, of each body by loads since pushedFrom_ (s), while the host moved them
+    double pushedFrom_ = 0;
+    uint64_t waits_ = 0, strays_ = 0;
     bool friction_ = false;
+    float spacing_ = 0;     // m, of the fluid
+    double frameTime_ = 0;  // s, of this frame
 };
 
 }  // namespace rivulet

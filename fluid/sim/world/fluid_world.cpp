@@ -30,8 +30,15 @@ const dvec3& FluidWorld::origin() const { return impl_->params.origin; }
 void FluidWorld::setOrigin(const dvec3& origin) { impl_->params.origin = origin; }
 int FluidWorld::lastSubsteps() const { return impl_->clock.lastSubsteps; }
 const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
-const std::vector<BodyState>& FluidWorld::bodies() const { return impl_->bodies.states(); }
-const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodies.loads(); }
+const std::vector<BodyState>& FluidWorld::bodies() const {
+    impl_->bodies.settle();
+    return impl_->bodies.states();
+}
+const std::vector<BodyState>& FluidWorld::expectedBodies() const { return impl_->bodies.shown(); }
+const std::vector<BodyLoad>& FluidWorld::bodyLoads() const {
+    impl_->bodies.settle();
+    return impl_->bodies.loads();
+}
 const std::vector<uint32_t>& FluidWorld::bodyIds() const { return impl_->bodies.ids(); }
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }

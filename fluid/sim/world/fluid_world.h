@@ -163,11 +163,12 @@ class FluidWorld {
     // above the transmitted pressure, and for a single particle the error is 6 to 10 %. For the load on a wall use fluid.probes. Reads back
     // and waits.
     std::vector<float> pressures() const;
-    const std::vector<Pose>& poses() const;  // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
-    const std::vector<BodyState>& bodies() const;
-    const std::vector<BodyLoad>& bodyLoads() const;  // of the last substep
-    std::vector<Pose> drawnPoses() const;            // the same, as ParticleView::drawn
-    uint64_t voxelsRewritten() const;                // of deforming solids, since the start
+    const std::vector<Pose>& poses() const;          // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
+    const std::vector<BodyState>& bodies() const;    // of the last substep; waits on a GPU that moves bodies (BodyHost::isFree)
+    const std::vector<BodyLoad>& bodyLoads() const;  // as bodies()
+    const std::vector<BodyState>& expectedBodies() const;  // for pictures: expected from earlier ones; waits in rapid motion
+    std::vector<Pose> drawnPoses() const;                  // the same, as ParticleView::drawn
+    uint64_t voxelsRewritten() const;                      // of deforming solids, since the start
     Device& device() const;
 
     // Everything in a world, its inputs included, is float and relative to its origin, a place (m) in the host's world. setOrigin() moves
@@ -178,17 +179,16 @@ class FluidWorld {
     dvec3 toHost(const vec3& p) const { return origin() + dvec3(p); }
     vec3 fromHost(const dvec3& p) const { return {p - origin()}; }
 
-    // Writes all data that the next step depends on into sections of `state`; a cpu continues from it bit for bit. Waits for the device.
-    // Error (failed): the host of the bodies has a state that it cannot save; the last step was interrupted.
+    // Writes all that the next step depends on into sections of `state`; a cpu continues from it bit for bit. Waits. Error (failed): the
+    // host of the bodies has a state that it cannot save; the last step was interrupted.
     Status savable() const;
     void save(WorldState& state);  // of a savable world
-    // Continues from a saved state, on any device. Other owners of sections in `state` take theirs before this call. Error: as
-    // WorldState::take and allTaken; the params that are `fixed` or the solids differ. The world is then as it was.
+    // Continues from a saved state, on any device. Other owners of sections in `state` take theirs before. Error: as WorldState::take and
+    // allTaken; the params that are `fixed` or the solids differ. The world is then as it was.
     Status restore(WorldState& state);
     // Continues from another world with the same box and spacing, with solids at `poses` and with `shapes` (as FluidInputs; all of them).
-    // It takes over the time, the particles except those inside a solid here, the bodies if they are the same, and the foam if this world
-    // has as many slots for it. The counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box or spacing,
-    // liquids that this world does not have, more particles than this world has slots.
+    // It takes over the time, the particles except those inside a solid here, the bodies if they are the same, and the foam if it has as
+    // many slots. Counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box, spacing, liquids; few slots.
     Status continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 
   private:

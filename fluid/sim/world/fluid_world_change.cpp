@@ -113,6 +113,7 @@ Result<uint32_t> FluidWorld::addBody(const Body& body, bool removeInside, std::o
     Impl& w = *impl_;
     const uint32_t own = id.value_or(w.bodies.nextId());
     if (Status may = w.mayChangeBodies(); !may) return may.error();
+    w.bodies.settle();
     if (Status sound = BodyPasses::check(body); !sound) return sound.error();
     for (const vec3& sample : body.meetsWater ? body.shape.samples : std::vector<vec3>())
         if (const vec3 p = body.state.pose.toWorld(sample); !w.solids.maySpawn(p, w.params.spacing, 0))
@@ -148,6 +149,7 @@ Result<uint32_t> FluidWorld::addBody(const Body& body, bool removeInside, std::o
 Status FluidWorld::removeBody(uint32_t id) {
     Impl& w = *impl_;
     if (Status may = w.mayChangeBodies(); !may) return may;
+    w.bodies.settle();
     const std::vector<uint32_t>& ids = w.bodies.ids();
     const auto at = static_cast<size_t>(std::ranges::find(ids, id) - ids.begin());
     if (at == ids.size()) return badInput(fmt::format("there is no body {}", id));
@@ -238,6 +240,7 @@ Status FluidWorld::Impl::removeInside(const std::function<bool(const vec3&)>& wi
 
 void FluidWorld::Impl::setDry(const std::vector<DryParams>& volumes) {
     if (volumes == dry.params()) return;  // a slider of the look sets them again
+    bodies.settle();
     dry.set(volumes, bodies.ids(), bodies.starts(), bodies.states());
     hasFree = true;
 }

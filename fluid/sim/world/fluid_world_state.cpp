@@ -28,6 +28,7 @@ void FluidWorld::save(WorldState& state) {
     ASSERT(savable(), "a world whose bodies cannot be saved");
     w.sources.report();
     w.dry.report();
+    w.bodies.settle();
     w.device->finish();
     w.device->poll();
     state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
@@ -218,6 +219,7 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
     bool sameBodies = false;
     if (w.bodies.any() && w.bodies.savable() && other.savable()) {
         WorldState state;
+        o.bodies.settle();
         o.bodies.save(state);
         const Result<BodyPasses::Saved> saved = w.bodies.take(state);
         sameBodies = saved && w.bodies.restore(*saved);

@@ -35,6 +35,8 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                          .residual = solve.residual,
                          .dtMin = clock.dtMin,
                          .dtMax = clock.dtMax,
+                         .bodyWaits = bodies.waits(),
+                         .bodyStrays = bodies.strays(),
                          .limited = {}};
     device->readLater(
         statsRows, STATS_THREADS * sizeof(StatsRow),

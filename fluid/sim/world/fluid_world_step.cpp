@@ -228,6 +228,8 @@ int FluidWorld::Impl::stepFrame(const FluidInputs& inputs, double seconds) {
     if (sleep) disturbSleep();
     iterations = 0;
     if (probes) probes->begin();
+    const bool carried = std::ranges::any_of(dry.params(), [](const DryParams& d) { return d.body >= 0; });
+    bodies.beginFrame(gravity, frame.pieces * frame.length, carried);
     double simulated = 0;
     int substeps = 0, done = 0;
     bool stop = false;
@@ -263,6 +265,7 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     const FluidParams& p = params;
     clock.lastSubsteps = substeps;
     clock.time += simulated;
+    bodies.endFrame();
     if (probes) probes->end(std::shared_ptr<ProbeFrame>(figures, &figures->loads), clock.time, simulated);
     gatherForDrawing();
     if (simulated > 0) volumes.count(step, particles, clock.time);
@@ -280,7 +283,10 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     }
     if (!p.ellipsoids) ellipsoids.forget();
     if (foam && simulated > 0) foam->run(p, step, *grid, particles, solids, simulated);
-    if (wet && simulated > 0) wet->run(p.wetness, step, *grid, particles, solids.poses(), bodies.states(), simulated);
+    if (wet && simulated > 0) {
+        bodies.settle();
+        wet->run(p.wetness, step, *grid, particles, solids.poses(), bodies.states(), simulated);
+    }
     const double lost = stepper.end(simulated);
     // The rounding of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {

@@ -1,4 +1,4 @@
-// The state of a rigid body, and one thread's partial sums of the fluid's load on it.
+// The state of a rigid body, what it moves by, and one thread's partial sums of the fluid's load on it.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
@@ -14,6 +14,20 @@ STRUCT(DeviceBody) {
     uint firstSample;  // index into all samples
     uint endSample;
     uint bodyCount;  // number of bodies
+    uint faults;     // BODY_STRAYED, BODY_MISLED: of advance_bodies since the host wrote 0
+    vec4 force;      // N, of the last substep; see BodyLoad
+    vec4 torque;     // N m
+    vec4 pendingImpulse;         // N s
+    vec4 pendingAngularImpulse;  // N m s
+};
+CONSTANT(uint, BODY_STRAYED, 1u);  // its centre of mass left the ball of BodyMotion
+CONSTANT(uint, BODY_MISLED, 2u);   // its next state would not have been finite: it keeps the last one
+STRUCT(BodyMotion) {
+    vec4 inertia;  // kg m^2, about the own axes; w: mass, kg, 0: it never moves
+    vec4 ball;     // m: where the centre of mass may be, within w of xyz
+    float added;   // mass of the fluid moved along, over the body's
+    float samples;  // 0: the water does not meet it
+    uint bodyCount;
     uint padding;
 };
 STRUCT(LoadRow) {
@@ -21,7 +35,7 @@ STRUCT(LoadRow) {
     vec4 torque;  // N m, about the centre of mass
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
-static_assert(sizeof(DeviceBody) == 80 && sizeof(LoadRow) == 32);
+static_assert(sizeof(DeviceBody) == 144 && sizeof(BodyMotion) == 48 && sizeof(LoadRow) == 32);
 }  // namespace rivulet
 #include "shaders/common/lang_end.h"
 #endif

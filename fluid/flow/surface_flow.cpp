@@ -235,9 +235,15 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     f.dries = static_cast<float>(double{w.params.evaporation} * w.sinceTurn[w.phase]);
     w.sinceTurn[w.phase] = 0;
 
+    w.time += seconds;
     w.turnFrame(inputs.toWorld, seconds, f);
     w.moveSkin(inputs, f);
+    w.takePlaces(inputs);
     w.device->fill(w.counter, 0);
+    // Of the steps before this one, those that are not reported yet.
+    const size_t reported = w.bornSince.size() - std::min<size_t>(w.steps - 1 - w.reports->sortedIn, w.bornSince.size());
+    w.bornSince.erase(w.bornSince.begin(), w.bornSince.begin() + static_cast<std::ptrdiff_t>(reported));
+    w.bornSince.push_back(f.births);
     if (!w.births.empty()) {
         w.device->write(w.birth, std::as_bytes(std::span(w.births)));
         w.device->run(w.born, f, {&w.grid->cellStart(), &w.drops.id, &w.birth, &w.drop, &w.motion, &w.counter}, f.births);
@@ -263,7 +269,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     }
     if (f.dries > 0)
         w.device->run(w.dry, f, {&w.skin, &w.frames, &w.painted, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
-    w.takeCounters();
+    w.takeCounters(f.freeAt);
     return ok();
 }
 

@@ -6,7 +6,7 @@
 namespace rivulet {
 
 // On a GPU all arrive some frames later, one after the other.
-void SurfaceFlow::Impl::takeCounters() {
+void SurfaceFlow::Impl::takeCounters(size_t freeAt) {
     device->readLater(counter, counter.bytes(), [to = std::weak_ptr(reports)](std::span<const std::byte> bytes) {
         const std::shared_ptr<Reports> t = to.lock();
         if (!t) return;  // the flow was destroyed
@@ -33,6 +33,15 @@ void SurfaceFlow::Impl::takeCounters() {
             t->left += l.volume;
         }
     });
+    device->readLater(
+        grid->cellStart(), sizeof(uint32_t),
+        [to = std::weak_ptr(reports), step = steps](std::span<const std::byte> bytes) {
+            const std::shared_ptr<Reports> t = to.lock();
+            if (!t) return;
+            t->inUse = *reinterpret_cast<const uint32_t*>(bytes.data());
+            t->sortedIn = step;
+        },
+        freeAt * sizeof(uint32_t));
     if (thesis) return;
     device->readLater(hangs, hangs.bytes(), [to = std::weak_ptr(reports)](std::span<const std::byte> bytes) {
         const std::shared_ptr<Reports> t = to.lock();
@@ -50,14 +59,82 @@ void SurfaceFlow::Impl::takeCounters() {
     });
 }
 
+// Where the skin is, for shape(): the host has its own positions; what a GPU computes arrives some steps later.
+void SurfaceFlow::Impl::takePlaces(const SurfaceFlowInputs& inputs) {
+    if (inputs.moved == nullptr && inputs.positions.empty()) return;
+    deforms = true;
+    movedAt = time;
+    if (device->backend() == Backend::cpu) return;  // shape() reads it
+    if (inputs.moved != nullptr) {
+        device->readLater(point, mesh.rest.size() * sizeof(vec4),
+                          [to = std::weak_ptr(reports), at = time, of = moves](std::span<const std::byte> bytes) {
+                              const std::shared_ptr<Reports> t = to.lock();
+                              if (!t) return;
+                              const auto* first = reinterpret_cast<const vec4*>(bytes.data());
+                              t->placesBefore.swap(t->places);
+                              t->beforeAt = t->placesAt;
+                              t->places.assign(first, first + bytes.size() / sizeof(vec4));
+                              t->placesAt = at;
+                              t->placesOf = of;
+                          });
+        return;
+    }
+    reports->places.clear();
+    reports->places.reserve(mesh.given.size());
+    for (const uint32_t k : mesh.given) reports->places.emplace_back(inputs.positions[k], 0.0F);
+    reports->placesBefore.clear();
+    reports->placesAt = time;
+    reports->placesOf = moves;
+}
+
 uint64_t SurfaceFlow::refused() const { return impl_->reports->refused; }
 
 uint32_t SurfaceFlow::room() const {
     const Impl& w = *impl_;
-    const auto state = w.device->readAll<uint32_t>(w.drop, size_t{w.count()} * DROP_UINTS);
-    uint32_t taken = static_cast<uint32_t>(w.births.size());
-    for (uint32_t k = 0; k < w.count(); ++k) taken += state[size_t{k} * DROP_UINTS + DROP_VOLUME] != 0 ? 1 : 0;
-    return taken < w.count() ? w.count() - taken : 0;
+    // Of each step that is not reported yet: births, one drop of each brim at most, and one pearl of each drop. Pearls leave a quarter
+    // free.
+    const uint64_t pearlsEnd = w.params.pearls && !w.thesis ? w.count() - w.count() / 4 : 0;
+    uint64_t used = w.reports->inUse;
+    const size_t late = std::min<size_t>(w.steps - w.reports->sortedIn, w.bornSince.size());
+    for (size_t k = w.bornSince.size() - late; k < w.bornSince.size(); ++k) {
+        const uint64_t before = used;
+        used += w.bornSince[k] + w.brims;
+        if (used < pearlsEnd) used = std::min(used + before, pearlsEnd);
+    }
+    used += w.births.size();
+    return used < w.count() ? w.count() - static_cast<uint32_t>(used) : 0;
+}
+
+SurfaceFlow::Shape SurfaceFlow::shape() const {
+    constexpr double kMostLate = 0.1;  // s
+    Impl& w = *impl_;
+    const Impl::Reports& known = *w.reports;
+    if (!known.places.empty() && w.movedAt - known.placesAt > kMostLate) {
+        w.device->finish();
+        w.device->poll();
+    }
+    const bool direct = w.device->backend() == Backend::cpu || (w.deforms && known.places.empty());
+    const uint64_t from = direct ? w.moves : known.placesOf;
+    if (w.shownAs == w.moves && w.shownFrom == from) return {w.moves, from, w.shown};
+    w.shownAs = w.moves;
+    w.shownFrom = from;
+    if (direct) {
+        w.shown = w.device->readAll<vec4>(w.point, w.mesh.rest.size());
+    } else if (known.places.empty()) {
+        w.shown.clear();
+        w.shown.reserve(w.mesh.rest.size());
+        for (const vec3& p : w.mesh.rest) w.shown.emplace_back(p, 0.0F);
+    } else {
+        w.shown = known.places;
+        const double late = w.movedAt - known.placesAt, apart = known.placesAt - known.beforeAt;
+        if (late > 0 && apart > 0 && known.placesBefore.size() == w.shown.size())
+            for (size_t k = 0; k < w.shown.size(); ++k) {
+                const vec3 way = vec3(known.places[k]) - vec3(known.placesBefore[k]);
+                if (glm::dot(way, way) > kJump * kJump * static_cast<float>(apart * apart)) continue;  // moved by the user
+                w.shown[k] += vec4(way * static_cast<float>(late / apart), 0.0F);
+            }
+    }
+    return {w.moves, from, w.shown};
 }
 
 std::vector<LeftDrop> SurfaceFlow::takeLeft() {

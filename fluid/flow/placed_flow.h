@@ -32,6 +32,15 @@ struct AirDrop {
     uint32_t skin = 0;                  // index of the skin that it left: it has that skin's liquid and wind
     std::optional<HungDrop> hung = {};  // that let go: what it was, `age` before
     double age = 0;                     // s
+    // Set by AirDrops, by whose order they count: which drop it is, and the last question about the water in its way.
+    uint64_t number = 0, asked = 0;
+    // The end of its way, which waits for the answers to its questions: it stays in sight there. No skin: it is below the floor.
+    struct End {
+        dvec3 to{0.0};
+        std::optional<size_t> skin = {};
+        SkinSearch::Hit where = {};
+    };
+    std::optional<End> end = {};
 };
 double radiusOf(const AirDrop& drop);  // m
 

@@ -49,8 +49,8 @@ GlSharing::Wrapped ownerOf(cl_mem memory) {
     return {memory, [](void* kept) { clReleaseMemObject(static_cast<cl_mem>(kept)); }};
 }
 
-// Waits for OpenGL, acquires the buffers, lets `work` enqueue its commands, releases the buffers and waits for OpenCL; where the driver orders
-// them, nothing waits here: acquiring comes after OpenGL's commands so far, and its later ones come after the release.
+// Waits for OpenGL, acquires the buffers, lets `work` enqueue its commands, releases the buffers and waits for OpenCL; where the driver
+// orders them, nothing waits here: acquiring comes after OpenGL's commands so far, and its later ones come after the release.
 template <class Work>
 Status acquired(const GlSharing::Impl& with, std::span<const cl_mem> all, const Work& work) {
     const auto count = static_cast<cl_uint>(all.size());

@@ -42,7 +42,8 @@ class GlSharing {
         size_t bytes;
     };
     // Copies the first `bytes` of each `from`, after all earlier commands of the Device; acquires and releases all buffers once. Later
-    // OpenGL commands see the copies. Waits for OpenGL, then for OpenCL, but not where the driver offers cl_khr_gl_event. Error (failed): then the contents of the OpenGL buffers are undefined.
+    // OpenGL commands see the copies. Waits for OpenGL, then for OpenCL, but not where the driver offers cl_khr_gl_event. Error (failed):
+    // then the contents of the OpenGL buffers are undefined.
     Status copy(std::span<const Copy> copies) const;
 
   private:

@@ -58,10 +58,11 @@ RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivul
 /* Steps skins, as rivulet_skin_step does each, and the drops in the air between them, which belong to the world: what leaves a skin falls,
    lands on a skin that it meets, goes into the world's water or is lost below `floor`; particles of the world that come down on a skin
    become drops. After the world's step of the same `seconds`. Water is exchanged if rivulet_world_options.skins_bring is above 0; on a
-   GPU two or three steps late, without waiting. rivulet_world_draw draws the drops in the air and those that hang from the skins, which the skins' maps then leave out.
-   `skins`: of the world's context, others than in the last call if need be: drops in the air of a skin that is not among them are lost.
-   `inputs`: an array with one entry for each skin; NULL: defaults. A world's reset or restore leaves skins and drops in the air as they
-   are. RIVULET_FAILED: some skins and drops have been stepped, others not; all are valid unless a stop has interrupted the step. */
+   GPU two or three steps late, without waiting. rivulet_world_draw draws the drops in the air and those that hang from the skins, which the
+   skins' maps then leave out. `skins`: of the world's context, others than in the last call if need be: drops in the air of a skin that is
+   not among them are lost. `inputs`: an array with one entry for each skin; NULL: defaults. A world's reset or restore leaves skins and
+   drops in the air as they are. RIVULET_FAILED: some skins and drops have been stepped, others not; all are valid unless a stop has
+   interrupted the step. */
 typedef struct rivulet_air {
     size_t size;
     const float* gravity;          /* m/s^2; NULL: fluid.gravity. That of `inputs` is not used */

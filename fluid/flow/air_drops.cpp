@@ -111,6 +111,7 @@ void AirDrops::listParticles(const Inputs& inputs, double seconds) {
 // skin land, the others fly on. If the skin has no free slots the particle passes.
 void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
     constexpr double kLongest = 0.1;  // s
+    constexpr double kAside = 0.25;   // of its way, chosen by eye
     FluidWorld& world = *inputs.world;
     spacing_ = double{world.particles().spacing};
     listParticles(inputs, seconds);
@@ -135,16 +136,20 @@ void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
         const double speed = glm::length(v);
         if (!std::isfinite(speed)) continue;
         const dvec3 way = speed > 0 ? v / speed : dvec3(0.0);
-        const FirstMet first = firstMet(inputs.skins, from, x + way * (0.5 * spacing_), then);
+        const dvec3 to = x + way * (0.5 * spacing_);
+        const FirstMet first = firstMet(inputs.skins, from, to, then);
         if (first.skin == inputs.skins.size()) continue;
         const uint64_t volume = volumeOf(promised + 1) - volumeOf(promised);
         const double most = std::max(double{inputs.skins[first.skin]->flow().params().largestDrop} * kCubicMillimetre / kPicolitre, 1.0);
         const auto count = static_cast<uint32_t>(std::max(std::ceil(static_cast<double>(volume) / most), 1.0));
         if (!hasRoom(inputs, first.skin, count)) continue;
         ++promised;
-        claims->all.push_back({x, v, std::cbrt(3 / (4 * std::numbers::pi)) * spacing_, {}});
+        // It may have met the skin some frames ago: then the drops begin there.
+        const dvec3 touches = late > 0 ? glm::mix(from, to, double{first.where.share}) - way * (0.5 * spacing_) : x;
+        claims->all.push_back({touches, v, std::cbrt(3 / (4 * std::numbers::pi)) * spacing_, {}});
         spread(inputs, from, first, count, then, claims->all.back());
-        asked.push_back({p.id, vec3(x), static_cast<float>(glm::length(dvec3(p.velocity)) * late + 2 * spacing_)});
+        // A particle that the water has turned aside is elsewhere.
+        asked.push_back({p.id, vec3(x), static_cast<float>(kAside * glm::length(dvec3(p.velocity)) * late + spacing_)});
         claimedAt_[p.id] = then;
     }
     if (!asked.empty()) {

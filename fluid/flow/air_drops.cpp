@@ -111,7 +111,7 @@ void AirDrops::listParticles(const Inputs& inputs, double seconds) {
 // skin land, the others fly on. If the skin has no free slots the particle passes.
 void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
     constexpr double kLongest = 0.1;  // s
-    constexpr double kAside = 0.25;   // of its way, chosen by eye
+    constexpr double kAside = 0.1;    // of its way, chosen by eye
     FluidWorld& world = *inputs.world;
     spacing_ = double{world.particles().spacing};
     listParticles(inputs, seconds);

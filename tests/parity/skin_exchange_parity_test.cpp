@@ -44,6 +44,7 @@ TEST_P(SkinExchangeParity, ItIsTheSameWaterInEveryFrame) {
     const double jet = 0.25 * 0.06e-3;  // m^3
     EXPECT_GT(world.stats().withdrawn, 0.75 * jet);
     EXPECT_LT(world.stats().withdrawn, 1.25 * jet + world.stats().deposited);
+    EXPECT_LT(flows.ledger().drained, 0.03 * jet);  // a few drops jump over the edge
 }
 
 // A skin that is nearly full: what is asked for by room() finds a slot, although the number in use is known some steps late.

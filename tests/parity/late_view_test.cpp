@@ -10,12 +10,12 @@
 #include "engine/gpu/buffer.h"
 #include "fluid/session/session.h"
 #include "tests/parity/devices.h"
-#include "tests/unit/opengl_test.h"
+#include "tests/unit/gpu_context.h"
 
 namespace rivulet::late_view_test {
 namespace {
 
-using LateViewTest = testing::OpenGlTest;
+using LateViewTest = GpuTest;
 
 std::vector<std::tuple<float, float, float>> sorted(const std::vector<vec4>& all) {
     std::vector<std::tuple<float, float, float>> some;
@@ -26,13 +26,13 @@ std::vector<std::tuple<float, float, float>> sorted(const std::vector<vec4>& all
 }
 
 TEST_F(LateViewTest, ParticlesAndSolidsAreOfOneTime) {
-    auto device = makeClDevice(ShaderFiles::developer());
-    if (!device && testing::mayLackOpenGl()) GTEST_SKIP() << device.error().message;
-    ASSERT_TRUE(device) << device.error().message;
+    Result<TestGpu> cl = makeTestGpu("cl");
+    if (!cl) GTEST_SKIP() << cl.error().message;
+    Device& device = *cl->device;
     const Result<SceneFile> scene =
         loadScene("paddle_wheel", std::vector<std::string>{"fluid.spacing=0.08", "look.quality=fine", "fluid.foam.most=200"});
     ASSERT_TRUE(scene) << scene.error().message;
-    const auto session = Session::create(*scene, **device, {});
+    const auto session = Session::create(*scene, device, {});
     ASSERT_TRUE(session) << session.error().message;
     struct Was {
         size_t frame = 0;
@@ -54,7 +54,7 @@ TEST_F(LateViewTest, ParticlesAndSolidsAreOfOneTime) {
         const ParticleView view = (*session)->world().particles();
         past[(*session)->time()] = {k, {}, placesOf((*session)->solids())};
         if (k % 4 == 0)  // waits: the frames between are asked for without
-            past[(*session)->time()].particles = sorted((*device)->readAll<vec4>(*view.drawn, view.slots));
+            past[(*session)->time()].particles = sorted(device.readAll<vec4>(*view.drawn, view.slots));
         ASSERT_TRUE(LateView::suits(**session));
         const auto shown = late.show(upload, **session);
         ASSERT_TRUE(shown) << shown.error().message;

@@ -1,6 +1,7 @@
 // Skins in water on cl and gl, where the world answers some frames late: no volume is lost or counted twice, in any frame.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fluid/flow/flow_mesh.h"

@@ -18,11 +18,13 @@ struct GlSharing::Impl {
     cl::Queue queue;  // the Device's own: copies are in order with its kernels
     GlContext gl;
     ClGlCalls calls;
+    bool ordered;  // cl_khr_gl_event: the driver orders both with the commands of the context that is current
 };
 
 namespace {
 
 constexpr const char* kExtension = "cl_khr_gl_sharing";
+constexpr const char* kOrders = "cl_khr_gl_event";
 constexpr size_t kHandleBytes = sizeof(void*);  // of a cl_device_id
 
 std::string extensionsOf(cl_device_id device) { return clDeviceText(device, CL_DEVICE_EXTENSIONS); }
@@ -47,11 +49,12 @@ GlSharing::Wrapped ownerOf(cl_mem memory) {
     return {memory, [](void* kept) { clReleaseMemObject(static_cast<cl_mem>(kept)); }};
 }
 
-// Waits for OpenGL, acquires the buffers, lets `work` enqueue its commands, releases the buffers and waits for OpenCL.
+// Waits for OpenGL, acquires the buffers, lets `work` enqueue its commands, releases the buffers and waits for OpenCL; where the driver
+// orders them, nothing waits here: acquiring comes after OpenGL's commands so far, and its later ones come after the release.
 template <class Work>
 Status acquired(const GlSharing::Impl& with, std::span<const cl_mem> all, const Work& work) {
     const auto count = static_cast<cl_uint>(all.size());
-    with.gl.finish();  // portable: events shared by OpenCL and OpenGL are an optional extension
+    if (!with.ordered) with.gl.finish();
     if (const cl_int code = with.calls.acquire(with.queue.get(), count, all.data(), 0, nullptr, nullptr); code != CL_SUCCESS)
         return couldNot("acquire OpenGL's buffers", code);
     const Status worked = work();
@@ -61,6 +64,10 @@ Status acquired(const GlSharing::Impl& with, std::span<const cl_mem> all, const 
         return couldNot("release OpenGL's buffers", code);
     }
     const cl::Event released(last);
+    if (with.ordered) {
+        clFlush(with.queue.get());
+        return worked;
+    }
     if (const cl_int code = clWaitForEvents(1, &last); code != CL_SUCCESS) return couldNot("release OpenGL's buffers", code);
     return worked;
 }
@@ -142,7 +149,10 @@ Result<std::shared_ptr<const GlSharing>> proveSharing(cl_context context, cl_com
                                                       const ClGlCalls& calls) {
     clRetainContext(context);
     clRetainCommandQueue(queue);
-    auto impl = std::make_unique<GlSharing::Impl>(GlSharing::Impl{cl::Context(context), cl::Queue(queue), gl, calls});
+    cl_device_id device = nullptr;
+    clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof(cl_device_id), static_cast<void*>(&device), nullptr);
+    const bool ordered = hasExtension(calls.extensions(device), kOrders);
+    auto impl = std::make_unique<GlSharing::Impl>(GlSharing::Impl{cl::Context(context), cl::Queue(queue), gl, calls, ordered});
     if (const Status proven = proveWith(*impl); !proven) return proven.error();
     return std::shared_ptr<const GlSharing>(std::make_shared<GlSharing>(std::move(impl)));
 }
@@ -178,7 +188,8 @@ Status GlSharing::copy(std::span<const Copy> copies) const {
     });
     if (!copied) return copied;
     for (const cl::Event& event : done)
-        if (const cl_int state = stateOf(event); state != CL_COMPLETE) return couldNot("copy into OpenGL's buffers", state);
+        if (const cl_int state = stateOf(event); state < CL_COMPLETE || (state > CL_COMPLETE && !impl_->ordered))
+            return couldNot("copy into OpenGL's buffers", state);
     return ok();
 }
 

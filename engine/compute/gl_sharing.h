@@ -41,8 +41,9 @@ class GlSharing {
         const Wrapped* to;
         size_t bytes;
     };
-    // Copies the first `bytes` of each `from`, after all earlier commands of the Device; acquires and releases all buffers once. Waits for
-    // OpenGL, then for OpenCL: later OpenGL commands see the copies. Error (failed): then the contents of the OpenGL buffers are undefined.
+    // Copies the first `bytes` of each `from`, after all earlier commands of the Device; acquires and releases all buffers once. Later
+    // OpenGL commands see the copies. Waits for OpenGL, then for OpenCL, but not where the driver offers cl_khr_gl_event. Error (failed):
+    // then the contents of the OpenGL buffers are undefined.
     Status copy(std::span<const Copy> copies) const;
 
   private:

@@ -41,7 +41,8 @@ RIVULET_API rivulet_status rivulet_skin_create(rivulet_context* context, const r
                                                rivulet_error* why);
 RIVULET_API void rivulet_skin_destroy(rivulet_skin* skin);
 /* Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame), in the shape that
-   the last step gave it. On a GPU the first call after a step in which the skin bent waits for it. */
+   the last step gave it. Does not wait: of a skin that a GPU bends, that shape is known as it was two or three steps ago, moved on with
+   its velocity of then. */
 RIVULET_API rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why);
 /* Advances the skin by `seconds`; 0 or less: nothing happens. RIVULET_FAILED after rivulet_context_stop: while a stop is asked, nothing is
    stepped. If the stop interrupts a step, the drops are not valid any more: destroy the skin and create another. */
@@ -56,11 +57,12 @@ RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivul
 
 /* Steps skins, as rivulet_skin_step does each, and the drops in the air between them, which belong to the world: what leaves a skin falls,
    lands on a skin that it meets, goes into the world's water or is lost below `floor`; particles of the world that come down on a skin
-   become drops. After the world's step of the same `seconds`. Water is exchanged if rivulet_world_options.skins_bring is above 0; this
-   waits for a GPU. rivulet_world_draw draws the drops in the air and those that hang from the skins, which the skins' maps then leave out.
-   `skins`: of the world's context, others than in the last call if need be: drops in the air of a skin that is not among them are lost.
-   `inputs`: an array with one entry for each skin; NULL: defaults. A world's reset or restore leaves skins and drops in the air as they
-   are. RIVULET_FAILED: some skins and drops have been stepped, others not; all are valid unless a stop has interrupted the step. */
+   become drops. After the world's step of the same `seconds`. Water is exchanged if rivulet_world_options.skins_bring is above 0; on a
+   GPU two or three steps late, without waiting. rivulet_world_draw draws the drops in the air and those that hang from the skins, which the
+   skins' maps then leave out. `skins`: of the world's context, others than in the last call if need be: drops in the air of a skin that is
+   not among them are lost. `inputs`: an array with one entry for each skin; NULL: defaults. A world's reset or restore leaves skins and
+   drops in the air as they are. RIVULET_FAILED: some skins and drops have been stepped, others not; all are valid unless a stop has
+   interrupted the step. */
 typedef struct rivulet_air {
     size_t size;
     const float* gravity;          /* m/s^2; NULL: fluid.gravity. That of `inputs` is not used */

@@ -38,10 +38,11 @@ void PlacedFlow::restore(double time, const dmat4& toWorld) {
 }
 
 void PlacedFlow::look() {
-    const FlowView view = flow_->view();
-    if (seen_ == view.moved) return;
-    seen_ = view.moved;
-    search_.follow(view.device->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
+    const SurfaceFlow::Shape shape = flow_->shape();
+    if (seen_ == shape.number && seenFrom_ == shape.from) return;
+    seen_ = shape.number;
+    seenFrom_ = shape.from;
+    search_.follow(shape.places);
 }
 
 std::optional<SkinSearch::Hit> PlacedFlow::meets(const dvec3& from, const dvec3& to, double then) {

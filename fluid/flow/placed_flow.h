@@ -32,6 +32,15 @@ struct AirDrop {
     uint32_t skin = 0;                  // index of the skin that it left: it has that skin's liquid and wind
     std::optional<HungDrop> hung = {};  // that let go: what it was, `age` before
     double age = 0;                     // s
+    // Set by AirDrops, by whose order they count: which drop it is, and the last question about the water in its way.
+    uint64_t number = 0, asked = 0;
+    // The end of its way, which waits for the answers to its questions: it stays in sight there. No skin: it is below the floor.
+    struct End {
+        dvec3 to{0.0};
+        std::optional<size_t> skin = {};
+        SkinSearch::Hit where = {};
+    };
+    std::optional<End> end = {};
 };
 double radiusOf(const AirDrop& drop);  // m
 
@@ -47,10 +56,9 @@ class PlacedFlow {
     void restore(double time, const dmat4& toWorld);
 
     // Where a path through the world first meets the skin. Nothing: nowhere. The skin has the shape that it has now; as a whole it is where
-    // it is now when the path begins, and where its motion has it at `then` (s) when it ends. Once for each shape it reads the skin's
-    // vertices back: on a GPU this waits.
+    // it is now when the path begins, and where its motion has it at `then` (s) when it ends. The shape is SurfaceFlow::shape()'s.
     std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
-    // The point of the skin nearest to `x`, m in the skin's frame, in the shape that it has now. Waits as meets().
+    // The point of the skin nearest to `x`, m in the skin's frame, in that shape.
     SkinPoint nearest(const vec3& x);
     // A drop that comes to rest on the skin there.
     void land(const SkinSearch::Hit& where, const AirDrop& drop);
@@ -74,7 +82,7 @@ class PlacedFlow {
     SkinSearch search_;
     dmat4 toWorld_{1.0};
     double time_ = 0;
-    uint64_t seen_ = UINT64_MAX;  // FlowView::moved of the shape that search_ has; UINT64_MAX: not known
+    uint64_t seen_ = UINT64_MAX, seenFrom_ = 0;  // SurfaceFlow::Shape's, of the shape that search_ has; UINT64_MAX: not known
 };
 
 // The first of `skins` that a path meets. skin: its index there; skins.size(): none.

@@ -148,8 +148,18 @@ class SurfaceFlow {
 
     // Waits for the device.
     std::vector<SkinDrop> drops() const;
-    uint64_t refused() const;          // picolitres that found no slot, as last known; does not wait
-    uint32_t room() const;             // free drop slots, less the drops added since the last step; waits
+    uint64_t refused() const;  // picolitres that found no slot, as last known; does not wait
+    // Drop slots that are free for sure, less the drops added since the last step. Does not wait: on a GPU the slots in use are known some
+    // steps late, and counted with what may have been spawned since.
+    uint32_t room() const;
+    // Where mesh()'s places are, m, in the skin's frame; w unused. Exact, but for a skin that deforms on a GPU (SurfaceFlowInputs::moved):
+    // there as reported two or three steps ago, moved on with the velocity of then. Off by its acceleration since: 1.7 mm at
+    // 1 m/s^2 three steps late. Waits for the first report, and where a GPU is 0.1 s behind. Valid until the next step.
+    struct Shape {
+        uint64_t number = 0, from = 0;  // other numbers, other places
+        std::span<const vec4> places = {};
+    };
+    Shape shape() const;
     std::vector<LeftDrop> takeLeft();  // since the last call, in the order of ids within each step
     uint64_t leaving() const;          // picolitres that takeLeft() would return; does not wait
     FlowView view() const;

@@ -45,7 +45,10 @@ struct FlowCourse {
     bool posed = false;
     uint64_t moves = 0;  // how often the basis was computed
     uint32_t steps = 0;
-    uint32_t largestBirth = 0;  // picolitres
+    double time = 0, movedAt = 0;          // s, simulated: now, and when the skin last deformed
+    bool deforms = false;                  // the skin has deformed
+    std::vector<uint32_t> bornSince = {};  // births of each step after Reports::sortedIn
+    uint32_t largestBirth = 0;             // picolitres
 };
 
 struct SurfaceFlow::Impl : FlowCourse {
@@ -73,11 +76,19 @@ struct SurfaceFlow::Impl : FlowCourse {
         bool film = false;     // a film exists
         std::vector<LeftDrop> gone;
         std::vector<HangingDrop> hanging;  // in that step
+        // In use at the last sort of step `sortedIn`: later spawns take slots that were free then.
+        uint32_t inUse = 0, sortedIn = 0;
+        // Where the skin's places were at a time, s, and before: of a skin that deforms on a GPU. Empty: not reported yet.
+        std::vector<vec4> places, placesBefore;
+        double placesAt = 0, beforeAt = 0;
+        uint64_t placesOf = 0;  // FlowCourse::moves
     };
     std::shared_ptr<Reports> reports = std::make_shared<Reports>();
     Bounds corners;  // m, of the skin at rest
     uint32_t brims = 0, brimPlaces = 0;
-    std::vector<uint32_t> placesOf;      // of each brim: how many
+    std::vector<uint32_t> placesOf;  // of each brim: how many
+    std::vector<vec4> shown;         // the places of shape()
+    uint64_t shownAs = UINT64_MAX, shownFrom = 0;
     std::optional<ThesisTables> thesis;  // of thesis mode
     std::optional<PendantDrop> pendant;  // of the others
     // Buffers that change from step to step, besides those that are sorted.
@@ -98,7 +109,8 @@ struct SurfaceFlow::Impl : FlowCourse {
     ThesisTables::Of forThesis() { return {skin, frames, driven, drop, motion, merged, drops, *grid}; }
     void turnFrame(const dmat4& toWorld, double seconds, FlowStep& f);
     FlowStep stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const;
-    void takeCounters();
+    void takeCounters(size_t freeAt);
+    void takePlaces(const SurfaceFlowInputs& inputs);
 };
 
 }  // namespace rivulet

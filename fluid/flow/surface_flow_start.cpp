@@ -216,6 +216,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     FlowStep f{};
     f.triangles = static_cast<uint32_t>(triangles);
     on.run(basis, f, {&skin, &point, &frames}, f.triangles);
+    reports->inUse = brimPlaces;
     return grid->build(s, drops);
 }
 

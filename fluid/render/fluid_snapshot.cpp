@@ -1,5 +1,6 @@
 #include "fluid/render/fluid_snapshot.h"
 
+#include <cstring>
 #include <tuple>
 #include <utility>
 
@@ -8,28 +9,57 @@
 
 namespace rivulet {
 
-Status FluidSnapshot::take(const FluidWorld& world, std::span<const vec4> drops, std::span<const vec4> pendants) {
+void FluidSnapshot::begin(const FluidWorld& world, std::span<const vec4> drops, std::span<const vec4> pendants) {
     taken_ = false;
+    coming_ = nullptr;
     revision_ = std::make_shared<const char>();
     drops_.assign(drops.begin(), drops.end());
     pendants_.assign(pendants.begin(), pendants.end());
-    Device& device = world.device();
-    onGpu_ = device.backend() == Backend::gl;
+    onGpu_ = world.device().backend() == Backend::gl;
     viscosity_ = world.particles().viscosity;
     const WetnessView wet = world.wetness();
     wetSurface_ = wet.surface && !wet.surface->points.empty() ? wet.surface : nullptr;
+}
+
+Status FluidSnapshot::take(const FluidWorld& world, std::span<const vec4> drops, std::span<const vec4> pendants) {
+    begin(world, drops, pendants);
     if (onGpu_) {
         if (Status copied = takeOnGpu(world); !copied) return copied;
     } else {
         frameOf(world, frame_);
         wetness_.resize(wetSurface_ ? wetSurface_->points.size() : 0);
-        if (wetSurface_) device.read(*wet.values, std::as_writable_bytes(std::span(wetness_)));
+        if (wetSurface_) world.device().read(*world.wetness().values, std::as_writable_bytes(std::span(wetness_)));
     }
     taken_ = true;
     return ok();
 }
 
+Status FluidSnapshot::takeLater(const FluidWorld& world, std::span<const vec4> drops, std::span<const vec4> pendants) {
+    if (world.device().backend() != Backend::cl) return take(world, drops, pendants);
+    begin(world, drops, pendants);
+    coming_ = std::make_shared<Coming>();
+    coming_->frame = std::move(frame_);  // its memory is used again
+    coming_->wetness.resize(wetSurface_ ? wetSurface_->points.size() : 0);
+    if (wetSurface_)
+        world.device().readLater(
+            *world.wetness().values, coming_->wetness.size() * sizeof(float),
+            [to = coming_](std::span<const std::byte> bytes) { std::memcpy(to->wetness.data(), bytes.data(), bytes.size()); });
+    frameLater(world, {coming_, &coming_->frame}, [to = std::weak_ptr(coming_)] {
+        if (const auto coming = to.lock()) coming->complete = true;
+    });
+    return ok();
+}
+
+bool FluidSnapshot::arrived() {
+    if (!coming_ || !coming_->complete) return taken_;
+    frame_ = std::move(coming_->frame);
+    wetness_ = std::move(coming_->wetness);
+    coming_ = nullptr;
+    return taken_ = true;
+}
+
 void FluidSnapshot::take(RecordedFrame frame, float viscosity) {
+    coming_ = nullptr;
     frame_ = std::move(frame);
     revision_ = std::make_shared<const char>();
     drops_.clear();

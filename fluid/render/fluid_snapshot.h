@@ -26,13 +26,25 @@ class FluidSnapshot {
     Status take(const FluidWorld& world, std::span<const vec4> drops = {}, std::span<const vec4> pendants = {});
     // Holds a recorded frame instead. viscosity: Pa s, of its liquid.
     void take(RecordedFrame frame, float viscosity);
+    // As the first, without waiting: on cl the copy arrives some frames later, within Device::poll(), on the others at once. Until
+    // arrived() has returned true, the snapshot is empty. Another take() ends it.
+    Status takeLater(const FluidWorld& world, std::span<const vec4> drops = {}, std::span<const vec4> pendants = {});
+    bool arrived();
     bool empty() const { return !taken_; }
     double time() const { return frame_.time; }  // s, simulated
 
   private:
     friend class FluidUpload;
+    void begin(const FluidWorld& world, std::span<const vec4> drops, std::span<const vec4> pendants);
     Status takeOnGpu(const FluidWorld& world);
 
+    // What takeLater() has asked for.
+    struct Coming {
+        RecordedFrame frame;
+        std::vector<float> wetness;
+        bool complete = false;
+    };
+    std::shared_ptr<Coming> coming_;
     bool taken_ = false, onGpu_ = false;
     std::shared_ptr<const void> revision_;  // a new one with each take
     RecordedFrame frame_;                   // of cpu and cl: all; of gl: time, spacing, box, dry

@@ -68,7 +68,7 @@ struct SkinFlows::Snapshot {
 std::shared_ptr<const SkinFlows::Snapshot> SkinFlows::save() const {
     auto made = std::make_shared<Snapshot>();
     for (const auto& skin : skins_) made->skins.push_back(skin->save());
-    made->air = air_;
+    made->air = air_.copy();
     made->dripped = dripped_;
     made->time = time_;
     return made;
@@ -86,7 +86,7 @@ Status SkinFlows::moveTo(Device& device, SceneFile scene, Scene& nodes, const Lo
         if (Status taken = skins_[k]->restore(*from->skins[k]); !taken) return taken;
         skins_[k]->placeNode(nodes);
     }
-    air_ = from->air;
+    air_ = from->air.copy();
     dripped_ = from->dripped;
     time_ = from->time;
     return ok();
@@ -178,8 +178,11 @@ SkinFlows::Ledger SkinFlows::Counted::ledger() const {
 }
 
 SkinFlows::Ledger SkinFlows::ledger() const {
-    Counted c = counted();
-    for (const auto& skin : skins_) c.add(skin->flow().ledger());
+    std::vector<SurfaceFlow::Ledger> own;
+    own.reserve(skins_.size());
+    for (const auto& skin : skins_) own.push_back(skin->flow().ledger());
+    Counted c = counted();  // then all that the device reports has arrived
+    for (const SurfaceFlow::Ledger& l : own) c.add(l);
     return c.ledger();
 }
 

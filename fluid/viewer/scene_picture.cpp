@@ -21,15 +21,23 @@ void ScenePicture::begin(bool software) {
 Status ScenePicture::draw(Session& session, int width, int height, Timeline& timeline, const std::function<void()>& uploaded) {
     const SceneFile& scene = session.scene();
     std::optional<TimedSpan> span(std::in_place, &timeline, "main", "upload");
-    Result<FluidView> fluid = viewOf(upload_, session);
-    if (!fluid) return fluid.error();
+    LateView::Shown shown{{}, &session.solids(), session.time()};
+    if (LateView::suits(session)) {
+        Result<LateView::Shown> late = late_.show(upload_, session);
+        if (!late) return late.error();
+        shown = *late;
+    } else {
+        const Result<FluidView> fluid = viewOf(upload_, session);
+        if (!fluid) return fluid.error();
+        shown.fluid = *fluid;
+    }
     if (Status wet = session.flows().draw(); !wet) return wet;
     Camera camera = cameraOf(scene.camera, session.bounds());
-    FrameView view = frameViewOf(camera, scene.light, width, height, session.time());
+    FrameView view = frameViewOf(camera, scene.light, width, height, shown.time);
     span.reset();
     uploaded();
     const TimedSpan drawing(&timeline, "main", "draw");
-    return renderer_->draw(view, *fluid, session.solids(), scene);
+    return renderer_->draw(view, shown.fluid, *shown.solids, scene);
 }
 
 ScenePicture::Quality ScenePicture::quality(const FluidLookParams& look) const {

@@ -7,6 +7,7 @@
 #include "engine/core/timeline.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/adaptive_quality.h"
+#include "fluid/session/late_view.h"
 #include "fluid/session/scene_renderer.h"
 #include "fluid/session/session.h"
 
@@ -32,6 +33,7 @@ class ScenePicture {
   private:
     std::unique_ptr<SceneRenderer> renderer_;
     FluidUpload upload_;
+    LateView late_;
     AdaptiveQuality adaptiveQuality_;
 };
 

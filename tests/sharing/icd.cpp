@@ -88,13 +88,19 @@ void poison(cl_command_queue queue, cl_mem memory, size_t size) {
     pocl.clEnqueueFillBuffer(queue, memory, &kPoison, 1, 0, size, 0, nullptr, nullptr);
 }
 
+// RIVULET_SHARING=ordered: with cl_khr_gl_event. A release is then complete before OpenGL's next command, without a wait of the program.
+bool ordersItself() {
+    const char* mode = std::getenv("RIVULET_SHARING");
+    return mode != nullptr && std::string_view(mode) == "ordered";
+}
+
 cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* needed) {
     if (what != CL_DEVICE_EXTENSIONS) return pocl.clGetDeviceInfo(device, what, size, value, needed);
     size_t own = 0;
     pocl.clGetDeviceInfo(device, what, 0, nullptr, &own);
     std::string text(own, '\0');
     pocl.clGetDeviceInfo(device, what, own, text.data(), nullptr);
-    text = std::string(text.c_str()) + " cl_khr_gl_sharing";
+    text = std::string(text.c_str()) + " cl_khr_gl_sharing" + (ordersItself() ? " cl_khr_gl_event" : "");
     if (needed != nullptr) *needed = text.size() + 1;
     if (value == nullptr) return CL_SUCCESS;
     if (size <= text.size()) return CL_INVALID_VALUE;
@@ -186,10 +192,15 @@ cl_int CL_API_CALL release(cl_command_queue queue, cl_uint count, const cl_mem* 
         poison(queue, all[k], found->second.size);
         transfers.push_back(transfer);
     }
+    if (ordersItself()) {
+        pocl.clFinish(queue);
+        transferWhatIsDone();
+    }
     return done != nullptr ? pocl.clEnqueueMarkerWithWaitList(queue, 0, nullptr, done) : CL_SUCCESS;
 }
 
 cl_int CL_API_CALL waitForEvents(cl_uint count, const cl_event* events) {
+    require(!ordersItself(), "the program waits for events, although the driver orders the commands itself");
     const cl_int code = pocl.clWaitForEvents(count, events);
     transferWhatIsDone();
     return code;

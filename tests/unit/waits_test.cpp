@@ -1,19 +1,24 @@
-// What waits for the GPU in a frame on backend gl: docs/how_it_works.md lists it, and nothing else does.
+// What waits for the GPU in a frame on backends gl and cl: docs/how_it_works.md lists it, and nothing else does.
 #include <gtest/gtest.h>
 #include <rivulet_glad/gl.h>
 
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/app/gl_count.h"
+#include "engine/compute/device_cl.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/session/late_view.h"
+#include "fluid/session/replay.h"
 #include "fluid/session/scene_renderer.h"
 #include "fluid/session/session.h"
+#include "tests/unit/cl_waits.h"
 #include "tests/unit/opengl_test.h"
 
 namespace rivulet::waits_test {
@@ -34,9 +39,11 @@ gpu::FunctionPointer find(const char* name) {
     return reinterpret_cast<gpu::FunctionPointer>(waitSync);
 }
 
+using Calls = std::map<std::string, size_t>;
+
 // Calls that return after the GPU has finished what they ask for.
-std::map<std::string, size_t> waiting(const GlCalls& calls) {
-    std::map<std::string, size_t> some;
+Calls waiting(const GlCalls& calls) {
+    Calls some = testing::clWaits();
     for (const char* name :
          {"glFinish", "glGetNamedBufferSubData", "glGetBufferSubData", "glReadPixels", "glReadnPixels", "glGetTexImage",
           "glGetTextureImage", "glGetTextureSubImage", "glGetnTexImage", "glMapBuffer", "glMapBufferRange", "glMapNamedBuffer"})
@@ -54,60 +61,125 @@ std::string ballInPool() {
     return path;
 }
 
-// A GPU waits for no frame of these: particles of all methods with foam, moving and deforming solids, drops and wetness on skins, a ball in
-// a pool. Ducks that are near others or a wall are moved by the host: their loads are read in each substep of such a frame.
-TEST(Waits, FramesWaitForWhatTheTableNamesAlone) {
-    Result<ContextEgl> context = ContextEgl::create({});
-    if (!context && testing::mayLackOpenGl()) GTEST_SKIP() << context.error().message;
-    ASSERT_TRUE(context) << context.error().message;
-    ASSERT_TRUE(gpu::load(find));
-    const ShaderFiles files = ShaderFiles::developer();
-    struct Case {
-        const char* scene;
-        std::vector<std::string> set;
-        bool bodies = false;  // that may touch something
-    };
-    for (const Case& c :
-         {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}},
-          Case{"paddle_wheel", {"fluid.spacing=0.08", "fluid.method=dfsph"}}, Case{"waving_sheet", {"fluid.spacing=0.08"}},
-          Case{"cold_bottle", {}}, Case{"", {}}, Case{"rubber_ducks", {"fluid.spacing=0.08", "fluid.fixedStep=0.0041666"}, true}}) {
-        SCOPED_TRACE(c.scene);
-        const std::unique_ptr<Device> device = makeGlDevice(files, {});
-        const Result<SceneFile> scene =
-            loadScene(*c.scene == 0 ? ballInPool() : RIVULET_SOURCE_DIR "/assets/scenes/" + std::string(c.scene) + ".json", c.set);
-        ASSERT_TRUE(scene) << scene.error().message;
-        auto session = Session::create(*scene, *device, {});
-        ASSERT_TRUE(session) << session.error().message;
-        const auto renderer = SceneRenderer::create(files);
-        ASSERT_TRUE(renderer) << renderer.error().message;
-        FluidUpload upload;
-        const FrameView view = frameViewOf(cameraOf(scene->camera, (*session)->bounds()), scene->light, 64, 48, 0);
-        uint64_t bodyWaits = 0;
-        for (int frame = 0; frame < 6; ++frame) {
-            if (frame == 3) {  // memory has grown to what it needs
-                device->finish();
-                device->poll();
-                bodyWaits = (*session)->world().stats().bodyWaits;
-                device->takeTimes();
-                startGlCount();
-                waited = 0;
-            }
-            (*session)->step(1.0 / 60, false);
-            const auto fluid = upload.view((*session)->world(), (*session)->scene().look);
-            ASSERT_TRUE(fluid) << fluid.error().message;
-            ASSERT_TRUE((*session)->flows().draw());
-            ASSERT_TRUE((*renderer)->draw(view, *fluid, (*session)->solids(), (*session)->scene()));
+struct Case {
+    const char* scene;
+    std::vector<std::string> set;
+    int from = 3;        // frames until memory has grown to what the scene needs, and until what is to be seen happens
+    bool lands = false;  // drops land in the frames that count
+};
+
+const Case kRain{"rain_on_spot", {"flow.0.mapSize=256"}, 12, true};
+const Case kShower{"shower", {"flow.0.mapSize=256", "fluid.spacing=0.01", "emitters.0.start=0"}, 18, true};
+// A head that speaks in the rain.
+const Case kCrying{"crying", {"flow.0.mapSize=256", "flow.0.sources.3.rate=60000"}, 12, true};
+
+// What waits in 3 frames, drawn. `bodyWaits`: FluidStats::bodyWaits in these. `deforming`: how many meshes deform on the device.
+Calls waitsOf(const Case& c, const ShaderFiles& files, Device& device, uint64_t& bodyWaits, size_t* deforming = nullptr) {
+    const Result<SceneFile> scene =
+        loadScene(*c.scene == 0 ? ballInPool() : RIVULET_SOURCE_DIR "/assets/scenes/" + std::string(c.scene) + ".json", c.set);
+    EXPECT_TRUE(scene) << scene.error().message;
+    if (!scene) return {};
+    auto session = Session::create(*scene, device, {});
+    EXPECT_TRUE(session) << session.error().message;
+    const auto renderer = SceneRenderer::create(files);
+    EXPECT_TRUE(renderer) << renderer.error().message;
+    if (!session || !renderer) return {};
+    FluidUpload upload;
+    LateView late;
+    double before = 0;  // m^3, on skins
+    const FrameView view = frameViewOf(cameraOf(scene->camera, (*session)->bounds()), scene->light, 64, 48, 0);
+    for (int frame = 0; frame < c.from + 3; ++frame) {
+        if (frame == c.from) {
+            if (!(*session)->flows().empty()) before = (*session)->flows().ledger().onSurface;
+            device.finish();
+            device.poll();
+            bodyWaits = (*session)->world().stats().bodyWaits;
+            device.takeTimes();
+            startGlCount();
+            testing::startClWaits();
+            waited = 0;
         }
-        std::map<std::string, size_t> waits = waiting(glCount());
-        device->finish();
-        device->poll();
-        bodyWaits = (*session)->world().stats().bodyWaits - bodyWaits;
-        if (c.bodies) {
+        (*session)->step(1.0 / 60, false);
+        LateView::Shown shown{{}, &(*session)->solids(), 0};
+        if (LateView::suits(**session)) {  // as a window does
+            const auto arrived = late.show(upload, **session);
+            EXPECT_TRUE(arrived) << arrived.error().message;
+            if (!arrived) return {};
+            shown = *arrived;
+        } else {
+            const auto fluid = viewOf(upload, **session);
+            EXPECT_TRUE(fluid) << fluid.error().message;
+            if (!fluid) return {};
+            shown.fluid = *fluid;
+        }
+        EXPECT_TRUE((*session)->flows().draw());
+        EXPECT_TRUE((*renderer)->draw(view, shown.fluid, *shown.solids, (*session)->scene()));
+    }
+    Calls waits = waiting(glCount());
+    device.finish();
+    device.poll();
+    bodyWaits = (*session)->world().stats().bodyWaits - bodyWaits;
+    if (deforming != nullptr)
+        for (const Node& node : (*session)->solids().nodes()) *deforming += node.deformer ? 1 : 0;
+    if (!(*session)->flows().empty()) {
+        const SkinFlows::Ledger ledger = (*session)->flows().ledger();
+        EXPECT_EQ(ledger.error, 0);
+        if (c.lands) {
+            EXPECT_GT(ledger.onSurface, before);
+        }
+    }
+    return waits;
+}
+
+class Waits : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        context_.emplace(ContextEgl::create({}));
+        if (!*context_ && testing::mayLackOpenGl()) GTEST_SKIP() << context_->error().message;
+        ASSERT_TRUE(*context_) << context_->error().message;
+        ASSERT_TRUE(gpu::load(find));
+    }
+    const ShaderFiles files_ = ShaderFiles::developer();
+
+  private:
+    std::optional<Result<ContextEgl>> context_;
+};
+
+// A GPU waits for no frame of these: particles of all methods with foam, moving and deforming solids, drops and wetness on skins, rain on
+// them, a ball in a pool. Ducks that are near others or a wall are moved by the host: their loads are read in each substep of such a frame.
+TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
+    for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}},
+                          Case{"paddle_wheel", {"fluid.spacing=0.08", "fluid.method=dfsph"}}, Case{"waving_sheet", {"fluid.spacing=0.08"}},
+                          Case{"cold_bottle", {}}, kRain, kShower, kCrying, Case{"", {}},
+                          Case{"rubber_ducks", {"fluid.spacing=0.08", "fluid.fixedStep=0.0041666"}}}) {
+        SCOPED_TRACE(c.scene);
+        const std::unique_ptr<Device> device = makeGlDevice(files_, {});
+        uint64_t bodyWaits = 0;
+        Calls waits = waitsOf(c, files_, *device, bodyWaits);
+        if (std::string_view(c.scene) == "rubber_ducks") {
             EXPECT_EQ(waits["glGetNamedBufferSubData"], bodyWaits);
             EXPECT_GE(bodyWaits, 3U) << "they begin near each other";
             waits.erase("glGetNamedBufferSubData");
         } else {
             EXPECT_EQ(bodyWaits, 0U);
+        }
+        for (const auto& [call, count] : waits) ADD_FAILURE() << count << " calls of " << call << " wait in 3 frames";
+    }
+}
+
+// The same on OpenCL, as a window draws it. The vertices of meshes that deform are read when they are drawn.
+TEST_F(Waits, FramesOnOpenClWaitForWhatTheTableNamesAlone) {
+    for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}}, kRain, kShower, kCrying}) {
+        SCOPED_TRACE(c.scene);
+        Result<std::unique_ptr<Device>> device = makeClDevice(files_);
+        if (!device && testing::mayLackOpenGl()) GTEST_SKIP() << device.error().message;
+        ASSERT_TRUE(device) << device.error().message;
+        uint64_t bodyWaits = 0;
+        size_t deforming = 0;
+        Calls waits = waitsOf(c, files_, **device, bodyWaits, &deforming);
+        if (std::string_view(c.scene) == "crying") {
+            EXPECT_EQ(waits["clEnqueueReadBuffer"], 3 * 2 * deforming);
+            waits.erase("clEnqueueReadBuffer");
         }
         for (const auto& [call, count] : waits) ADD_FAILURE() << count << " calls of " << call << " wait in 3 frames";
     }

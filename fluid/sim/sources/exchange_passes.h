@@ -2,6 +2,7 @@
 // at a point; SourcePasses handles deposits.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,10 +29,22 @@ class ExchangePasses {
               std::span<const uint32_t> slots, bool sorted);
     Bounds taken(size_t count);  // around the places of the `count` that take() has just removed, m; waits
 
+    // The same without waiting: `then` is called once, on the cpu before this returns, on a GPU during a later poll(). kMost at most.
+    void withinLater(const StepParams& step, const Particles& particles, const Bounds& box, float faster, float looser,
+                     std::function<void(std::span<const WorldParticle>)> then);
+    // `claims`: each id once, in ascending order; kMost at most. `then`: of each, 1 if its particle was removed.
+    void claim(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
+               std::span<const ParticleClaim> claims, bool sorted, std::function<void(std::span<const uint32_t>)> then);
+
   private:
     Device* device_ = nullptr;
-    Kernel within_, take_, forget_;
+    void forget(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
+                bool sorted);
+    void list(const StepParams& step, const Particles& particles, const Bounds& box, float faster, float looser, size_t most);
+
+    Kernel within_, take_, forget_, claim_;
     Buffer counter_, found_, slots_;
+    Buffer claimed_, expected_, removed_;
 };
 
 }  // namespace rivulet

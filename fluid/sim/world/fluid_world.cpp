@@ -162,13 +162,42 @@ void FluidWorld::withdraw(std::span<const uint32_t> slots) {
     w.invalidateCells();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);
-    w.withdrawn += slots.size();
+    *w.withdrawn += slots.size();
     if (w.sleep) {
         w.disturbAround(w.exchange.taken(slots.size()));
         w.sleep->slotsChange();
     }
     w.grid->sortAsleep();
-    w.figures->withdrawn = static_cast<double>(w.withdrawn) * std::pow(double{w.params.spacing}, 3);
+    w.figures->withdrawn = static_cast<double>(*w.withdrawn) * std::pow(double{w.params.spacing}, 3);
+}
+
+void FluidWorld::withinLater(const Bounds& box, float faster, float looser, std::function<void(std::span<const WorldParticle>)> then) {
+    ASSERT(impl_->exchange.any(), "an exchange of water needs Sources::expectedDeposit > 0");
+    impl_->exchange.withinLater(impl_->step, impl_->particles, box, faster, looser, std::move(then));
+}
+
+void FluidWorld::withdrawLater(std::span<const ParticleClaim> claims, std::function<void(std::span<const uint32_t>)> then) {
+    Impl& w = *impl_;
+    ASSERT(w.exchange.any(), "an exchange of water needs Sources::expectedDeposit > 0");
+    if (claims.empty()) {
+        then({});
+        return;
+    }
+    w.change();
+    w.invalidateCells();
+    const std::vector<NamedBuffer> remembered = w.method->remembered();
+    w.exchange.claim(w.step, *w.grid, w.particles, remembered, claims, w.sorted,
+                     [all = w.withdrawn, figures = std::weak_ptr(w.figures), volume = std::pow(double{w.params.spacing}, 3),
+                      then = std::move(then)](std::span<const uint32_t> removed) {
+                         for (const uint32_t one : removed) *all += one;
+                         if (const auto f = figures.lock()) f->withdrawn = static_cast<double>(*all) * volume;
+                         then(removed);
+                     });
+    if (w.sleep) {
+        for (const ParticleClaim& c : claims) w.disturbAround({c.position - c.within, c.position + c.within});
+        w.sleep->slotsChange();
+    }
+    w.grid->sortAsleep();
 }
 
 Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {

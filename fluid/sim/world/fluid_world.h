@@ -119,24 +119,24 @@ class FluidWorld {
     Status setAttribute(size_t attribute, std::span<const uint32_t> ids, std::span<const vec4> values);
     Status paint(size_t attribute, const Volume& inside, const vec4& value);
 
-    // Exchange with other owners of water, such as skins; only if Sources::expectedDeposit is above 0. Places m, velocities m/s. deposit:
-    // adds `volume` m^3 at the place. It is pending until it suffices for a particle, which is then spawned above the place. Volume is
-    // conserved; deposited water is of the world's own liquid.
+    // Exchange with other owners of water, such as skins; only if Sources::expectedDeposit is above 0. deposit: adds `volume` m^3 of the
+    // world's own liquid; m, m/s. It is pending until it suffices for a particle, which is spawned above the place. Volume is conserved.
     void deposit(const vec3& place, const vec3& velocity, double volume);
     // within: the particles now in a box that are faster (m/s) or of a lower density ratio than given, 16,384 at most. withdraw: removes
-    // some of them, spacing^3 m^3 each. Both wait.
+    // some of them, spacing^3 m^3 each. Both wait. The others do not: `then` is called once, 2 to 3 frames later on a GPU, on the cpu
+    // before they return; it may outlive the world. `claims`: in ascending order of ids, each once; `then` receives 1 of each removed.
     std::vector<WorldParticle> within(const Bounds& box, float faster = 0, float looser = 1.0e9F);
     void withdraw(std::span<const uint32_t> slots);
+    void withinLater(const Bounds& box, float faster, float looser, std::function<void(std::span<const WorldParticle>)> then);
+    void withdrawLater(std::span<const ParticleClaim> claims, std::function<void(std::span<const uint32_t>)> then);
 
-    // The water at points, and hits of rays (water_query.h), at the current time: at t = 0 and after each step. Particles spawned at the
-    // end of a step are included from the next step on. The world does not change. These calls wait. Error (failed): out of memory; the
-    // last step was interrupted.
+    // The water at points, and hits of rays (water_query.h), at the current time; particles spawned at the end of a step count from the
+    // next one on. The world does not change. These calls wait. Error (failed): out of memory; the last step was interrupted.
     Result<std::vector<FluidSample>> sample(std::span<const vec3> places);
     Result<std::vector<FluidHit>> cast(std::span<const FluidRay> rays);
     // y (m) of the highest surface over (or under) each x, z, looking down from above the box; NaN where there is no water.
     Result<std::vector<float>> heights(std::span<const vec2> places);
-    // As sample(), without waiting: `then` is called once, 2 to 3 frames later on a GPU (within Device::poll(), which step() calls), on
-    // the cpu before this returns; it may outlive the world. Error: as sample(); then it is not called.
+    // As sample(), without waiting: `then` as of withinLater(), in Device::poll(), which step() calls. Error: as sample(); not called then.
     Status sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then);
 
     // Volumes to watch (volumes.h), 32 at most; each step updates their counts, late on a GPU. Saved and restored; reset() empties them.

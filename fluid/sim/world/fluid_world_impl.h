@@ -66,7 +66,8 @@ struct FluidWorld::Impl {
     DryPasses dry;
     std::vector<DryVolume> dryBefore;  // where sleeping water last was disturbed by them
     ExchangePasses exchange;           // for other owners of water
-    uint64_t withdrawn = 0;            // particles removed by them
+    // Particles removed by them; shared with reads in flight.
+    std::shared_ptr<uint64_t> withdrawn = std::make_shared<uint64_t>(0);
     // Particles that emitters and sinks spawned and removed before setSources() replaced them.
     struct {
         uint64_t emitted = 0, drained = 0;

@@ -353,7 +353,7 @@ void FluidWorld::Impl::writeStart(const std::vector<bool>& leftOut) {
     writeAttributes();
     sources.reset();
     dry.reset(bodies.states());
-    withdrawn = 0;
+    withdrawn = std::make_shared<uint64_t>(0);
     before = {};
     if (foam) foam->reset();
     if (wet) wet->reset();

@@ -51,7 +51,7 @@ void FluidWorld::save(WorldState& state) {
     w.sources.save(state);
     if (w.foam) w.foam->save(state);
     if (w.wet) w.wet->save(state);
-    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.withdrawn, 1));
+    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(w.withdrawn.get(), 1));
     if (const uint64_t before[] = {w.before.emitted, w.before.drained + w.dry.removed()}; before[0] + before[1] > 0)
         state.put<uint64_t>("world.sourcesBefore", before);
     w.volumes.save(state);
@@ -156,7 +156,7 @@ Status FluidWorld::restore(WorldState& state) {
     if (w.around) w.around->set(saved->position);
     w.gatherForDrawing();
     w.sources.restore(*sources);
-    w.withdrawn = taken;
+    w.withdrawn = std::make_shared<uint64_t>(taken);
     w.before = {before[0], before[1]};
     if (w.foam) w.foam->restore(foam);
     if (w.wet) w.wet->restore(wetness);

@@ -16,7 +16,7 @@ void FluidWorld::Impl::fillLedger(FluidStats& f) const {
     f.backlog = sources.backlog() * volume;
     f.deposited = static_cast<double>(sources.deposited()) * volume;
     f.pendingVolume = sources.pending() * volume;
-    f.withdrawn = static_cast<double>(withdrawn) * volume;
+    f.withdrawn = static_cast<double>(*withdrawn) * volume;
 }
 
 void FluidWorld::Impl::gatherStats(int substeps, double until) {

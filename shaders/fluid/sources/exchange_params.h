@@ -9,7 +9,7 @@ STRUCT(ExchangeParams) {
     StepParams step;
     vec4 low;  // xyz m: low corner of the box
     vec4 high;
-    uint count;    // number of slots to free
+    uint count;    // number of slots to free, or of claims
     uint most;     // capacity of the result, particles
     float faster;  // m/s: selects particles that are faster, or
     float looser;  // that have a smaller density ratio

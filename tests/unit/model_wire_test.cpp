@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <random>
 
@@ -96,8 +97,8 @@ TEST(ModelWire, CutBytesAreAnError) {
         ASSERT_FALSE(read) << length;
         ASSERT_EQ(read.error().fault, Fault::badInput);
     }
-    std::vector<std::byte> longer = whole;
-    longer.push_back(std::byte{0});
+    std::vector<std::byte> longer(whole.size() + 1);  // the last is 0
+    std::copy(whole.begin(), whole.end(), longer.begin());
     EXPECT_FALSE(receiveModel(longer));
 }
 

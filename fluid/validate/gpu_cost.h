@@ -32,8 +32,8 @@ struct GpuSpec {
     double resident = 0;                    // threads that it holds at full occupancy
     double pixels = 0;                      // fragments/s that it can write; 0: not a limit
     double texels = 0;                      // texture reads/s; 0: not a limit
-    // Of a device that is software, which does all of this one after the other, s: a fragment that is written, a filtered read of a texture,
-    // a texel that is fetched. 0: not counted.
+    // Of a device that is software, which does all of this one after the other, s: a fragment that is written, a filtered read of a
+    // texture, a texel that is fetched. 0: not counted.
     double fragmentSeconds = 0, filteredSeconds = 0, fetchSeconds = 0;
 };
 

@@ -14,15 +14,9 @@ namespace rivulet::small_worlds_test {
 namespace {
 
 // Not run by a small world. map_tiles is the cpu's form of map_quads; those of bench measure a device.
-const std::set<std::string> kMissing = {"bench/rate_copy",
-                                        "bench/rate_math",
-                                        "flow/map_tiles",
-                                        "fluid/grid/bounds",
-                                        "fluid/grid/cell_of",
-                                        "fluid/sleep/sleep_disturb",
-                                        "fluid/sleep/sleep_drawn",
-                                        "fluid/sources/forget",
-                                        "fluid/surface/ellipsoids_free",
+const std::set<std::string> kMissing = {"bench/rate_copy",         "bench/rate_math",      "flow/map_tiles",
+                                        "fluid/grid/bounds",       "fluid/grid/cell_of",   "fluid/sleep/sleep_disturb",
+                                        "fluid/sleep/sleep_drawn", "fluid/sources/forget", "fluid/surface/ellipsoids_free",
                                         "fluid/surface/foam_drawn"};
 
 class SmallWorlds : public ::testing::TestWithParam<const char*> {};

@@ -108,7 +108,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         around = thesis->around();
     else
         around.add(around.max + h);
-    PairTraits traits;
+    PairTraits traits{.keeps = false};
     traits.repeats = !thesis;
     Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots, traits);
     if (!made) return made.error();

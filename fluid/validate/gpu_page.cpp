@@ -158,7 +158,7 @@ std::string beforeAndAfter() {
     std::string page =
         "## Pair loops, before and after\n\nThe sweeps over neighbours dominated every method. A GPU now first finds the neighbours within "
         "the support radius, a sixth of those in the cells, and computes the terms of these alone. The first sweep of a step keeps a bit "
-        "for each of them, 72 bytes a particle, and later sweeps find nothing again (`FOR_PAIRS` in `shaders/fluid/grid/neighbors.h`). "
+        "for each of them, 72 bytes a particle, and later sweeps do not search again (`FOR_PAIRS` in `shaders/fluid/grid/neighbors.h`). "
         "Counted with 1,024 particles, a thread, the mean of all calls in a step; in step: of 32 threads that go through the code "
         "together, over 32. Times on the devices here are in [performance.md](performance.md#on-a-gpu).\n\n"
         "| kernel | operations, before | after | in step, before | after | longest thread, before | after |\n"

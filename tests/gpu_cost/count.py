@@ -25,7 +25,7 @@ METHODS = ("wcsph", "pbf", "dfsph")
 SPACINGS = (0.03125, 0.0223, 0.0179)  # 1,024, 2,662 and 4,563 particles
 COUNTED_AT = 0.2                        # s: the column has spread over half of the tank
 FRAMES = 24
-ITERATIONS = 2                          # of a solver while it is counted
+ITERATIONS = 5  # of a solver while it is counted: with the sweep for a frame's figures, a third of pbf_lambda's search for neighbours, as by default
 ITERATED = {"fluid/methods/pbf_lambda", "fluid/methods/pbf_shift", "fluid/solids/follow_walls", "fluid/methods/dfsph_rate", "fluid/methods/dfsph_push",
             "fluid/methods/residual", "fluid/methods/solver_progress"}
 ONCE = {"fluid/surface/ellipsoids", "fluid/world/stats", "fluid/world/set_ratio"}  # a frame

@@ -122,7 +122,7 @@ Status NeighborGrid::Impl::allocateCells() {
     Allocator take{*device};
     const size_t sorted = totalCells();
     const size_t counts = sorted + 4 + asleepCells();
-    const bool keeps = !onCpu() && !traits.repeats && !glm::any(traits.periodic);
+    const bool keeps = traits.keeps && !onCpu() && !traits.repeats && !glm::any(traits.periodic);
     const size_t kept = keeps ? size_t{KEPT_ROWS} * KEPT_WORDS * count : 0;
     Buffer starts = take((counts + kept) * sizeof(uint32_t)), held, lanes;
     if (onCpu()) {

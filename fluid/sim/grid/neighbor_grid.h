@@ -28,6 +28,7 @@ struct PairTraits {
     bool follows = false;     // the grid of a very large box may cover only the particles: NeighborGrid::follow
     bool sleeps = false;      // fluid.sleep: particles may be asleep
     bool asleepRows = false;  // the same on a GPU: pair kernels visit rows of sleeping particles too
+    bool keeps = true;        // a GPU has room to keep which neighbours are within reach; false: no FOR_PAIRS that keeps runs on the grid
     uint32_t workGroup = 0;   // threads, of a GPU; 0 = the device's default
     // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that tests which particles take part.
     std::vector<Define> threadDefines() const;

@@ -85,6 +85,7 @@ struct MethodRow {
     // True if an equation of state defines a speed of sound, which limits the steps (fluid.cfl) and the path of bodies in a step.
     bool hasSound = false;
     bool linkedLists = false;  // it runs on fluid.grid linked_list
+    bool keepsPairs = true;    // on a GPU its first sweep keeps which neighbours are within reach (shaders/fluid/grid/neighbors.h)
     // The smallest number of substeps in a sixtieth of a second.
     int (*leastSubsteps)(const FluidParams& params) = [](const FluidParams&) { return 1; };
     // Its own Params, a group of the "fluid" section; none: it has none.

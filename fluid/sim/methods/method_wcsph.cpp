@@ -131,7 +131,8 @@ MethodRow wcsphThesisMethod() {
             .make = [](Device& device, const MethodSetup& setup) { return make(device, setup, true); },
             .doesViscosity = true,
             .hasSound = true,
-            .linkedLists = true};
+            .linkedLists = true,
+            .keepsPairs = false};
 }
 
 }  // namespace rivulet

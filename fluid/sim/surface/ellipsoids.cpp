@@ -47,7 +47,7 @@ Result<HostEllipsoids> ellipsoidsOf(Device& device, std::span<const vec4> partic
     for (const vec4& p : particles) box.add(vec3(p));
     box.min -= vec3(2 * spacing);
     box.max += vec3(2 * spacing);
-    Result<NeighborGrid> grid = NeighborGrid::create(device, box, 2 * spacing, count, {});
+    Result<NeighborGrid> grid = NeighborGrid::create(device, box, 2 * spacing, count, {.keeps = false});
     if (!grid) return grid.error();
     Result<Particles> sorted = Particles::create(device, count);
     if (!sorted) return sorted.error();

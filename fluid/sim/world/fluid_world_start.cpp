@@ -33,6 +33,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     traits.periodic = params.box.periodic();
     traits.walls = !glm::all(traits.periodic) || solids.any();
     traits.samples = bodies.sampleCount();
+    traits.keeps = methodOf(params).keepsPairs;
     traits.sleeps = params.sleep.on;
     traits.asleepRows = traits.sleeps && device->backend() != Backend::cpu;
     traits.follows = sourceSetup.expectedDeposit == 0 && !traits.sleeps;  // deposits come at any place

@@ -126,7 +126,7 @@ FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {
         real3 d_ = APART(at, LOAD3(position, first_ + b_));                                     \
         bits_ |= (dot(d_, d_) < PAIR_REACH * PARAMS.h * (PAIR_REACH * PARAMS.h) ? 1u : 0u) << b_; \
     }
-#if defined(PERIODIC)  // rows are single cells, and there may be 27 of them: nothing is kept
+#if defined(PERIODIC) || defined(THESIS)  // of single cells there may be 27; the thesis sweeps once: nothing is kept
 #define PAIR_BITS_(i, at, position) FIND_PAIRS_(at, position)
 #define ALL_PAIR_BITS_(i, at, position) FIND_PAIRS_(at, position)
 #else

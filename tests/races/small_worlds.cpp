@@ -14,6 +14,8 @@
 #include "fluid/voxel/voxelize_depth.h"
 #include "fluid/voxel/voxelize_solid.h"
 #include "fluid/voxel/voxelize_surface.h"
+#include "shaders/fluid/solids/body_state.h"
+#include "shaders/fluid/world/step_params.h"
 #include "tests/physics/baked_mesh.h"
 #include "tests/physics/loads.h"
 #include "tests/races/small_worlds_parts.h"
@@ -236,6 +238,9 @@ Answer sources(Device& device) {
     if (!world) return a;
     const Volume watched[] = {{1, Volume::box, vec3(0.2F), vec3(0.2F)}, {2, Volume::sphere, vec3(0.3F, 0.1F, 0.1F), {}, 0.1F}};
     EXPECT_TRUE(world->setVolumes(watched));
+    size_t listed = 0;
+    std::vector<ParticleClaim> claims;
+    std::vector<uint32_t> claimed;
     for (int k = 0; k < 4; ++k) {
         if (k == 1) {
             EXPECT_TRUE(world->paint(0, watched[0], vec4(3.0F)));
@@ -245,10 +250,20 @@ Answer sources(Device& device) {
             std::vector<uint32_t> slots;
             for (const WorldParticle& particle : world->within({vec3(0.0F), vec3(0.15F)})) slots.push_back(particle.slot);
             world->withdraw(slots);
+            // The last claim is of a particle that is elsewhere.
+            const Bounds claimable{vec3(0.15F, 0.0F, 0.0F), vec3(0.3F, 0.1F, 0.3F)};
+            for (const WorldParticle& particle : world->within(claimable)) claims.push_back({particle.id, particle.position, kSpacing});
+            std::ranges::sort(claims, {}, &ParticleClaim::id);
+            if (!claims.empty()) claims.back().position.x += 1;
+            world->withinLater(claimable, 0, 1.0e9F, [&](std::span<const WorldParticle> found) { listed = found.size(); });
+            world->withdrawLater(claims, [&](std::span<const uint32_t> removed) { claimed.assign(removed.begin(), removed.end()); });
             world->deposit(vec3(0.45F, 0.2F, 0.2F), vec3(0, -1, 0), 0.0004);
         }
         step(*world);
     }
+    EXPECT_GT(claims.size(), 4U);
+    EXPECT_EQ(listed, claims.size());
+    EXPECT_EQ(static_cast<size_t>(std::ranges::count(claimed, 1U)), claims.size() - 1);
     addMeans(*world, a.near);
     for (const VolumeCount& count : world->volumes()) a.near.push_back(0.001F * static_cast<float>(count.inside));
     a.within = 0.01;
@@ -336,7 +351,46 @@ Answer queries(Device& device) {
     return a;
 }
 
-// In each method one particle becomes NaN: it is counted, all others go on and meet the walls.
+// Of three bodies that a GPU moves one has a load that is NaN and falls freely, one a load that would make it impossibly fast and one a
+// spin that is NaN: these keep their states.
+void addBodies(Device& device, std::vector<float>& to) {
+    const Result<Kernel> kernel = device.kernel("fluid/solids/advance_bodies");
+    EXPECT_TRUE(kernel) << (kernel ? "" : kernel.error().message);
+    if (!kernel) return;
+    std::vector<LoadRow> loads(size_t{3} * LOAD_THREADS);
+    loads[5].torque.y = NAN;
+    loads[LOAD_THREADS].force.x = 1.0e16F;
+    std::vector<DeviceBody> bodies(3);
+    for (DeviceBody& b : bodies) {
+        b.position = vec4(0.1F, 0.2F, 0.3F, 0.0F);
+        b.rotation = vec4(0, 0, 0, 1);
+    }
+    bodies[2].spin.y = NAN;
+    const std::vector<BodyMotion> motions(3, {vec4(1.0F), vec4(0.1F, 0.2F, 0.3F, 1.0F), 0.5F, 10.0F, 3, 0});
+    Result<Buffer> sums = device.allocate(loads.size() * sizeof(LoadRow)), moved = device.allocate(bodies.size() * sizeof(DeviceBody)),
+                   by = device.allocate(motions.size() * sizeof(BodyMotion));
+    EXPECT_TRUE(sums && by && moved);
+    if (!sums || !by || !moved) return;
+    device.writeAll<LoadRow>(*sums, loads);
+    device.writeAll<DeviceBody>(*moved, bodies);
+    device.writeAll<BodyMotion>(*by, motions);
+    StepParams step{};
+    step.dt = static_cast<float>(kStep);
+    step.gravity = vec4(0, -9.81F, 0, 0);
+    device.run(*kernel, step, {&*sums, &*by, &*moved}, 3);
+    const std::vector<DeviceBody> after = device.readAll<DeviceBody>(*moved, 3);
+    EXPECT_NEAR(after[0].velocity.y, -9.81F * step.dt, 1.0e-6F);
+    EXPECT_NEAR(glm::length(after[0].rotation), 1, 1.0e-6F);
+    EXPECT_EQ(after[0].faults, 0U);
+    for (size_t k = 1; k < 3; ++k) {
+        EXPECT_EQ(after[k].position, bodies[k].position);
+        EXPECT_EQ(after[k].rotation, bodies[k].rotation);
+        EXPECT_EQ(after[k].faults, BODY_MISLED);
+    }
+    for (const DeviceBody& b : after) add(to, b.position);
+}
+
+// In each method one particle becomes NaN: it is counted, all others go on and meet the walls. So do bodies.
 Answer lost(Device& device) {
     constexpr uint32_t kLost = 77;
     const VoxelField obstacle = test::baked(test::makeBox(vec3(0.35F, -0.1F, 0.05F), vec3(0.45F, 0.1F, 0.2F)), 0.025F, kSpacing);
@@ -368,6 +422,7 @@ Answer lost(Device& device) {
         EXPECT_EQ(stats.lost, 1U) << method;
         EXPECT_EQ(stats.nan, 1U) << method;
     }
+    addBodies(device, a.exact);
     return a;
 }
 

@@ -321,7 +321,7 @@ float BodyPasses::fastest() const {
     for (size_t k = 0; k < states_.size(); ++k) {
         if (!bodies_[k].meetsWater) continue;
         float own = glm::length(states_[k].velocity) + glm::length(states_[k].spin) * reach_[k];
-        if (isAhead()) own += late_->forecast.reserve(k, 0.0F) * static_cast<float>(time_ - late_->forecast.time());
+        if (isAhead()) own += late_->forecast.gain(k, time_);
         speed = std::max(speed, own);
     }
     return speed;

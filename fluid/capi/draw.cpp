@@ -193,7 +193,7 @@ rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buff
 
 rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid, size_t index, rivulet_wet_solid* wet,
                                        rivulet_error* why) {
-    return with(world, why, Needs::memory, [&]() -> Status {
+    return with(world, why, Needs::device, [&]() -> Status {
         const WetnessView view = world->world->wetness();
         if (!view.surface) return badInput("fluid.wetness.on is off: nothing gets wet");
         if (solid != RIVULET_WALL && solid != RIVULET_BODY)

@@ -84,7 +84,7 @@ void addSink(Lines& lines, const SinkParams& s) {
 rivulet_status rivulet_world_lines(const rivulet_world* world,
                                    void (*line)(void* user, int32_t part, size_t index, const float* from, const float* to), void* user,
                                    rivulet_error* why) {
-    return with(world, why, Needs::memory, [&]() -> Status {
+    return with(world, why, Needs::device, [&]() -> Status {
         if (line == nullptr) return badInput("line is NULL: it receives the lines");
         const FluidWorld& of = *world->world;
         const FluidParams& fluid = of.params();
@@ -107,9 +107,10 @@ rivulet_status rivulet_world_lines(const rivulet_world* world,
             lines->begin(RIVULET_PART_WALL, k);
             lines->axes(pose, 4 * fluid.spacing);
         }
-        for (size_t k = 0; k < of.bodies().size(); ++k) {
+        const std::vector<BodyState>& bodies = of.expectedBodies();
+        for (size_t k = 0; k < bodies.size(); ++k) {
             lines->begin(RIVULET_PART_BODY, of.bodyIds()[k]);
-            lines->axes(of.bodies()[k].pose, 4 * fluid.spacing);
+            lines->axes(bodies[k].pose, 4 * fluid.spacing);
         }
         world->context->hostLog.later([lines, line, user] {
             for (const Lines::Line& l : lines->all) line(user, l.part, l.index, l.from.data(), l.to.data());

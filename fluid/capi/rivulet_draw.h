@@ -162,7 +162,7 @@ typedef struct rivulet_wet_solid {
     uint32_t first_cell; /* of wet_cells */
 } rivulet_wet_solid;
 /* Of the wall or body, a rivulet_solid, with the id `index`; again after each step if it moves, and after walls or bodies came or went.
-   RIVULET_BAD_INPUT: it does not get wet. */
+   On a GPU it may wait for the body. RIVULET_BAD_INPUT: it does not get wet. */
 RIVULET_API rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid, size_t index, rivulet_wet_solid* wet,
                                                    rivulet_error* why);
 

@@ -157,11 +157,10 @@ RIVULET_API rivulet_status rivulet_world_set_sources(rivulet_world* world, const
 RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why);
 
 enum { RIVULET_ATTRIBUTES = 4 }; /* at most, of a world */
-/* Copies the particles to host memory, at most `capacity`. Their order changes from step to step; ids do not. Arrays may be NULL. Waits for
-   the device. */
+/* Copies the particles to host memory. Their order changes from step to step; ids do not. Arrays may be NULL. Waits for the device. */
 typedef struct rivulet_particles {
     size_t size;
-    size_t capacity;   /* of each array */
+    size_t capacity;   /* of each array: no more are copied */
     float* positions;  /* m, 3 each */
     float* velocities; /* m/s, 3 each */
     float* densities;  /* over the rest density */

@@ -325,9 +325,7 @@ struct BulletSolids::Impl {
         const double share = left > 0 ? std::min(seconds / left, 1.0) : 1.0;
         left = std::max(left - seconds, 0.0);
         for (size_t k = 0; k < moving.size(); ++k) {
-            const auto s = static_cast<float>(share);
-            const Pose next{glm::mix(now[k].position, target[k].position, s),
-                            glm::normalize(glm::slerp(now[k].rotation, target[k].rotation, s))};
+            const Pose next = between(now[k], target[k], share);
             moving[k]->setInterpolationWorldTransform(to(now[k]));
             moving[k]->setWorldTransform(to(next));
             btVector3 linear, angular;

@@ -113,10 +113,13 @@ void SceneSolids::placeModels(const SceneFile& scene, double time) {
         if (model.plays() && !model.rigid()) model.place(time, nodes_);
 }
 
-void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world) {
+void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world, bool bodies) {
     const std::vector<Pose> poses = world.drawnPoses();
     for (size_t k = 0; k < rigid_.size(); ++k) nodeOf(rigid_[k].model).local = matrixOf(poses[k]);
-    for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(world.expectedBodies()[k].pose);
+    if (bodies && !bodyNodes_.empty()) {
+        const std::vector<BodyState>& states = world.expectedBodies();
+        for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(states[k].pose);
+    }
     for (const Deforming& d : deforming_) bendNode(d, d.field->positions());
     placeModels(scene, world.time());
     wetNodes(world.wetness().surface.get());

@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 #include "fluid/scene/solids_bullet.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "fluid/sim/world/world_state.h"
@@ -112,6 +116,9 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
         for (uint32_t k = 0; k < kBodies; ++k) {
             const DeviceBody& d = got[k];
             const BodyState& s = states[k];
+            EXPECT_TRUE(isFinite(vec3(d.position)) && isFinite(vec3(d.velocity)) && isFinite(vec3(d.spin))) << k;
+            EXPECT_NEAR(glm::length(d.rotation), 1, 1.0e-5F) << k;  // false for NaN, too
+            EXPECT_TRUE(isFinite(vec3(d.pendingImpulse)) && isFinite(vec3(d.pendingAngularImpulse))) << k;
             way = std::max(way, double{glm::length(vec3(d.position) - s.pose.position)});
             speed = std::max(speed, double{glm::length(vec3(d.velocity) - s.velocity)});
             spin = std::max(spin, double{glm::length(vec3(d.spin) - s.spin) / (1 + glm::length(s.spin))});
@@ -132,7 +139,9 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
     EXPECT_LT(turn, 1.0e-5);
     EXPECT_LT(fastTurn, 2.0e-3) << "four turns, about the unstable axis, too";
     EXPECT_LT(pending, 1.0e-4);
-    EXPECT_EQ(states[0].pose.position, bodies[0].state.pose.position) << "without mass";
+    const DeviceBody still = device.readAll<DeviceBody>(*moved, 1)[0];
+    EXPECT_EQ(vec3(still.position), bodies[0].state.pose.position) << "without mass";
+    EXPECT_EQ(still.rotation, rows[0].rotation);
 }
 // A finite load that would make a body impossibly fast: it keeps its state, and that is noted.
 TEST_P(AdvanceBodies, KeepsTheStateOfABodyWhoseNextOneIsImpossible) {
@@ -424,6 +433,51 @@ TEST_P(BodiesAhead, SavedResetAddedRemoved) {
     EXPECT_EQ(world->bodies()[0].velocity, vec3(0.0F));
     world->step({.gravity = p.gravity}, kFrame);
     EXPECT_NEAR(0.5 - double{world->bodies()[0].pose.position.y}, fallen(kFrame), 1.0e-4);
+}
+
+// A light ball slams on water. Pictures of it wait in the half second that follows; where nothing is drawn, only what moves it may.
+TEST_P(BodiesAhead, WhoDrawsNothingDoesNotWaitForPictures) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    const std::string path = testing::TempDir() + "bodies_ahead_" + GetParam() + ".json";
+    std::ofstream(path) << R"({"name": "slam", "doc": "", "fluid": {"method": "pbf", "spacing": 0.1,
+        "box": {"max": [1.6, 1.2, 1.6]}, "blocks": [{"max": [1.6, 0.5, 1.6]}]},
+        "bodies": [{"shape": "sphere", "radius": 0.15, "density": 100, "position": [0.8, 1.0, 0.8]}]})";
+    const Result<SceneFile> scene = loadScene(path, {});
+    ASSERT_TRUE(scene) << scene.error().message;
+    uint64_t waits[2] = {0, 0};
+    for (const bool draws : {true, false}) {
+        auto session = Session::create(*scene, *gpu->device, {});
+        ASSERT_TRUE(session) << session.error().message;
+        if (!draws) (*session)->drawNothing();
+        for (int frame = 0; frame < 45; ++frame) (*session)->step(kFrame, false);
+        waits[draws ? 0 : 1] = statsOf((*session)->world()).bodyWaits;
+    }
+    std::printf("%s: %llu waits drawn, %llu not\n", GetParam(), static_cast<unsigned long long>(waits[0]),
+                static_cast<unsigned long long>(waits[1]));
+    EXPECT_GT(waits[0], waits[1] + 10);
+}
+
+// A host that refuses one body by an exception, after memory has grown: those that are there move on as if nothing had been.
+TEST_P(BodiesAhead, GoOnWhereTheHostThrows) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    FluidParams p = pool("pbf", 0.1F);
+    p.maxBodySamples = 600;
+    Solids solids{.bodies = {ball(vec3(0.25F, 0.7F, 0.25F))}};
+    FreeBodies own(solids.bodies), others(solids.bodies);
+    solids.bodyHost = own.host();
+    solids.bodyHost.added = [](void*, uint32_t, const Body&) { throw std::runtime_error("no"); };
+    auto world = make(*gpu->device, p, solids);
+    solids.bodyHost = others.host();
+    auto exact = make(*gpu->device, p, solids);
+    ASSERT_TRUE(world && exact);
+    for (int frame = 0; frame < 5; ++frame) {
+        if (frame == 3) EXPECT_THROW((void)world->addBody(ball(vec3(0.25F, 0.45F, 0.25F))), std::runtime_error);
+        for (FluidWorld* w : {world.get(), exact.get()}) w->step({.gravity = p.gravity}, kFrame);
+    }
+    EXPECT_LT(apart(world->bodies()[0], exact->bodies()[0]), 2.0e-6);
+    EXPECT_LT(world->bodies()[0].pose.position.y, 0.68F);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, BodiesAhead, testing::Values("cl", "gl"), [](const auto& row) { return row.param; });

@@ -7,19 +7,18 @@
 #include <cstdlib>
 #include <sstream>
 #include <string_view>
-#include <tuple>
 
-#include "engine/scene/skin.h"
-#include "fluid/flow/flow_maps.h"
 #include "fluid/session/session.h"
 #include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/host_particles.h"
 #include "fluid/voxel/voxelize_depth.h"
 #include "fluid/voxel/voxelize_solid.h"
 #include "fluid/voxel/voxelize_surface.h"
+#include "shaders/fluid/solids/body_state.h"
+#include "shaders/fluid/world/step_params.h"
 #include "tests/physics/baked_mesh.h"
-#include "tests/physics/charted_skins.h"
 #include "tests/physics/loads.h"
+#include "tests/races/small_worlds_parts.h"
 
 namespace rivulet::races {
 namespace {
@@ -54,9 +53,6 @@ void step(FluidWorld& world, const FluidInputs& inputs = {}, double seconds = kS
     world.device().finish();
     world.device().poll();
 }
-
-void add(std::vector<float>& to, const vec4& v) { to.insert(to.end(), {v.x, v.y, v.z, v.w}); }
-void add(std::vector<float>& to, const vec3& v) { to.insert(to.end(), {v.x, v.y, v.z}); }
 
 // Every particle, by id.
 void addParticles(FluidWorld& world, std::vector<float>& to) {
@@ -242,6 +238,9 @@ Answer sources(Device& device) {
     if (!world) return a;
     const Volume watched[] = {{1, Volume::box, vec3(0.2F), vec3(0.2F)}, {2, Volume::sphere, vec3(0.3F, 0.1F, 0.1F), {}, 0.1F}};
     EXPECT_TRUE(world->setVolumes(watched));
+    size_t listed = 0;
+    std::vector<ParticleClaim> claims;
+    std::vector<uint32_t> claimed;
     for (int k = 0; k < 4; ++k) {
         if (k == 1) {
             EXPECT_TRUE(world->paint(0, watched[0], vec4(3.0F)));
@@ -251,10 +250,20 @@ Answer sources(Device& device) {
             std::vector<uint32_t> slots;
             for (const WorldParticle& particle : world->within({vec3(0.0F), vec3(0.15F)})) slots.push_back(particle.slot);
             world->withdraw(slots);
+            // The last claim is of a particle that is elsewhere.
+            const Bounds claimable{vec3(0.15F, 0.0F, 0.0F), vec3(0.3F, 0.1F, 0.3F)};
+            for (const WorldParticle& particle : world->within(claimable)) claims.push_back({particle.id, particle.position, kSpacing});
+            std::ranges::sort(claims, {}, &ParticleClaim::id);
+            if (!claims.empty()) claims.back().position.x += 1;
+            world->withinLater(claimable, 0, 1.0e9F, [&](std::span<const WorldParticle> found) { listed = found.size(); });
+            world->withdrawLater(claims, [&](std::span<const uint32_t> removed) { claimed.assign(removed.begin(), removed.end()); });
             world->deposit(vec3(0.45F, 0.2F, 0.2F), vec3(0, -1, 0), 0.0004);
         }
         step(*world);
     }
+    EXPECT_GT(claims.size(), 4U);
+    EXPECT_EQ(listed, claims.size());
+    EXPECT_EQ(static_cast<size_t>(std::ranges::count(claimed, 1U)), claims.size() - 1);
     addMeans(*world, a.near);
     for (const VolumeCount& count : world->volumes()) a.near.push_back(0.001F * static_cast<float>(count.inside));
     a.within = 0.01;
@@ -342,7 +351,46 @@ Answer queries(Device& device) {
     return a;
 }
 
-// In each method one particle becomes NaN: it is counted, all others go on and meet the walls.
+// Of three bodies that a GPU moves one has a load that is NaN and falls freely, one a load that would make it impossibly fast and one a
+// spin that is NaN: these keep their states.
+void addBodies(Device& device, std::vector<float>& to) {
+    const Result<Kernel> kernel = device.kernel("fluid/solids/advance_bodies");
+    EXPECT_TRUE(kernel) << (kernel ? "" : kernel.error().message);
+    if (!kernel) return;
+    std::vector<LoadRow> loads(size_t{3} * LOAD_THREADS);
+    loads[5].torque.y = NAN;
+    loads[LOAD_THREADS].force.x = 1.0e16F;
+    std::vector<DeviceBody> bodies(3);
+    for (DeviceBody& b : bodies) {
+        b.position = vec4(0.1F, 0.2F, 0.3F, 0.0F);
+        b.rotation = vec4(0, 0, 0, 1);
+    }
+    bodies[2].spin.y = NAN;
+    const std::vector<BodyMotion> motions(3, {vec4(1.0F), vec4(0.1F, 0.2F, 0.3F, 1.0F), 0.5F, 10.0F, 3, 0});
+    Result<Buffer> sums = device.allocate(loads.size() * sizeof(LoadRow)), moved = device.allocate(bodies.size() * sizeof(DeviceBody)),
+                   by = device.allocate(motions.size() * sizeof(BodyMotion));
+    EXPECT_TRUE(sums && by && moved);
+    if (!sums || !by || !moved) return;
+    device.writeAll<LoadRow>(*sums, loads);
+    device.writeAll<DeviceBody>(*moved, bodies);
+    device.writeAll<BodyMotion>(*by, motions);
+    StepParams step{};
+    step.dt = static_cast<float>(kStep);
+    step.gravity = vec4(0, -9.81F, 0, 0);
+    device.run(*kernel, step, {&*sums, &*by, &*moved}, 3);
+    const std::vector<DeviceBody> after = device.readAll<DeviceBody>(*moved, 3);
+    EXPECT_NEAR(after[0].velocity.y, -9.81F * step.dt, 1.0e-6F);
+    EXPECT_NEAR(glm::length(after[0].rotation), 1, 1.0e-6F);
+    EXPECT_EQ(after[0].faults, 0U);
+    for (size_t k = 1; k < 3; ++k) {
+        EXPECT_EQ(after[k].position, bodies[k].position);
+        EXPECT_EQ(after[k].rotation, bodies[k].rotation);
+        EXPECT_EQ(after[k].faults, BODY_MISLED);
+    }
+    for (const DeviceBody& b : after) add(to, b.position);
+}
+
+// In each method one particle becomes NaN: it is counted, all others go on and meet the walls. So do bodies.
 Answer lost(Device& device) {
     constexpr uint32_t kLost = 77;
     const VoxelField obstacle = test::baked(test::makeBox(vec3(0.35F, -0.1F, 0.05F), vec3(0.45F, 0.1F, 0.2F)), 0.025F, kSpacing);
@@ -374,6 +422,7 @@ Answer lost(Device& device) {
         EXPECT_EQ(stats.lost, 1U) << method;
         EXPECT_EQ(stats.nan, 1U) << method;
     }
+    addBodies(device, a.exact);
     return a;
 }
 
@@ -395,130 +444,6 @@ Answer voxels(Device& device) {
         addBits(solid.bits, a.exact);
         if (depth) addBits(depth->surface.bits, a.exact);
     }
-    return a;
-}
-
-// A ball whose halves two bones turn, with a morph.
-Answer skin(Device& device) {
-    ModelPart part;
-    part.name = "ball";
-    const test::Skin ball = test::cubeBall(1.0F, 4);
-    part.mesh.positions = ball.positions;
-    part.mesh.indices = ball.indices;
-    part.bones = {{0, mat4(1.0F)}, {0, mat4(1.0F)}};
-    MorphTarget wide{"wide", {}, {}};
-    for (uint32_t i = 0; i < ball.positions.size(); ++i) {
-        wide.vertices.push_back(i);
-        wide.offsets.push_back(0.3F * ball.positions[i]);
-        part.grips.push_back({{0, 1, 0, 0}, {0.4F, 0.6F, 0, 0}});
-    }
-    part.morphs = {wide};
-    Answer a;
-    Result<Deformer> made = Deformer::create(device, part);
-    EXPECT_TRUE(made) << (made ? "" : made.error().message);
-    if (!made) return a;
-    mat4 moved(1.0F);
-    moved[3] = vec4(0.1F, 0.2F, 0.0F, 1.0F);
-    const float weights[] = {0.5F};
-    const mat4 bones[] = {mat4(1.0F), moved};
-    made->run(weights, bones);
-    for (const Buffer* buffer : {&made->positions(), &made->normals()})
-        for (const vec4& v : device.readAll<vec4>(*buffer, made->vertices())) add(a.exact, v);
-    return a;
-}
-
-// The drops of a flow, whose ids are slots: by what is theirs. `painting`: they leave trails. Two drops that paint a cell share it by their
-// order, which is then noise in volumes: 2.8 % at most was seen. Without trails all is exact; on a GPU to rounding, since the order gives
-// drops their ids, in whose order sums are.
-void addDrops(const SurfaceFlow& flow, Answer& a, bool painting, bool onCpu) {
-    std::vector<vec4> drops;
-    for (const SkinDrop& d : flow.drops()) drops.emplace_back(20.0F * d.position, static_cast<float>(d.volume * 1e9));
-    std::sort(drops.begin(), drops.end(), [](const vec4& one, const vec4& other) {
-        return std::tie(one.w, one.x, one.y, one.z) < std::tie(other.w, other.x, other.y, other.z);
-    });
-    if (!painting)
-        for (const vec4& d : drops) add(onCpu ? a.exact : a.near, d);
-    dvec3 middle(0.0);
-    double sum = 0, square = 0;
-    for (const vec4& d : drops) {
-        middle += dvec3(d) * double{d.w};
-        sum += double{d.w};
-        square += double{d.w} * double{d.w};
-    }
-    EXPECT_FALSE(drops.empty());
-    add(a.near, vec3(middle / std::max(sum, 1.0e-9)));
-    a.near.push_back(static_cast<float>(0.1 * sum));
-    a.near.push_back(static_cast<float>(0.01 * square));
-    const SurfaceFlow::Ledger ledger = flow.ledger();
-    EXPECT_EQ(ledger.added, ledger.drops + ledger.film + ledger.left + ledger.evaporated + ledger.refused);
-    a.near.push_back(static_cast<float>(1.0e-8 * static_cast<double>(ledger.film)));
-    a.near.push_back(static_cast<float>(1.0e-8 * static_cast<double>(ledger.left)));
-    a.within = painting ? 0.03 : onCpu ? 1.0e-6 : 1.0e-4;
-}
-Answer flowOnBall(Device& device, bool painting) {
-    Answer a;
-    const test::Skin skin = test::cubeBall(0.03F, 6);
-    Result<FlowMesh> mesh = makeFlowMesh(skin.view());
-    EXPECT_TRUE(mesh);
-    const std::vector<vec2> uvs = cornerUvs(*mesh, skin.view());
-    SurfaceFlowParams p;
-    p.capacity = 256;
-    p.filmCell = 0.002F;
-    if (!painting) p.trail = 0;
-    SkinBrim brim;
-    for (int k = 0; k < 4; ++k) {
-        const vec3 x = 0.03F * glm::normalize(vec3(1, 0.1F, -0.3F + 0.2F * static_cast<float>(k)));
-        brim.places.push_back(nearestPoint(*mesh, x));
-        brim.spills.push_back(nearestPoint(*mesh, x - vec3(0, 0.004F, 0)));
-    }
-    brim.picolitres = 9000000;
-    Result<SurfaceFlow> made = SurfaceFlow::create(device, std::move(*mesh), p, std::span(&brim, 1));
-    EXPECT_TRUE(made) << (made ? "" : made.error().message);
-    if (!made) return a;
-    Result<FlowMaps> maps = FlowMaps::create(*made, uvs, 32);
-    EXPECT_TRUE(maps) << (maps ? "" : maps.error().message);
-    if (!maps) return a;
-    for (const vec3& x :
-         {vec3(1, 1.1F, 0.2F), vec3(1, 1.0F, 0.3F), vec3(0.2F, 1, 1.3F), vec3(-1, 2, 0.3F), vec3(1, 0, 1), vec3(0, -1, 0.1F)})
-        made->add(nearestPoint(made->mesh(), 0.03F * glm::normalize(x)), 17000000, vec3(0, -0.3F, 0));
-    for (int k = 0; k < 12; ++k)
-        made->add(nearestPoint(made->mesh(), 0.03F * glm::normalize(vec3(-1, 0.3F, 0.05F * static_cast<float>(k)))), 3000000, vec3(0.0F),
-                  true);
-    std::vector<vec3> places(made->mesh().rest.size() == 0 ? 0 : skin.positions.size());
-    for (int k = 0; k < 5; ++k) {
-        for (size_t i = 0; i < places.size(); ++i) places[i] = skin.positions[i] * (1.0F + 0.01F * static_cast<float>(k));
-        if (k == 4) places.clear();  // the skin stands still
-        EXPECT_TRUE(made->step({.wind = vec3(1, 0, 0), .positions = places}, 1.0 / 60));
-        device.finish();
-        device.poll();
-        maps->draw(*made);
-    }
-    addDrops(*made, a, painting, device.backend() == Backend::cpu);
-    const std::vector<uint32_t> words = device.readAll<uint32_t>(maps->texels(), maps->texels().bytes() / 4);
-    EXPECT_TRUE(std::ranges::any_of(words, [](uint32_t w) { return w != 0; }));
-    return a;
-}
-Answer flow(Device& device) { return flowOnBall(device, true); }
-Answer flowWithoutTrails(Device& device) { return flowOnBall(device, false); }
-Answer thesisFlow(Device& device) {
-    Answer a;
-    const Shape cone = coneShape(0.05F, 0.03F, 0.1F, 16, 8);
-    Result<FlowMesh> mesh = makeFlowMesh(cone.view());
-    EXPECT_TRUE(mesh);
-    const std::vector<vec2> uvs = cornerUvs(*mesh, cone.view());
-    SurfaceFlowParams p;
-    p.capacity = 256;
-    Result<SurfaceFlow> made = SurfaceFlow::createThesis(device, std::move(*mesh), uvs, p, {});
-    EXPECT_TRUE(made) << (made ? "" : made.error().message);
-    if (!made) return a;
-    for (int k = 0; k < 6; ++k) {
-        for (const double at : {0.9 + 0.004 * k, 0.93 + 0.003 * k, 1.5})
-            made->add(nearestPoint(made->mesh(), vec3(dvec3(0.04 * std::cos(at), 0.09, 0.04 * std::sin(at)))), 900000 + 40000 * (k % 7));
-        EXPECT_TRUE(made->step({.wind = vec3(1, 0, 0)}, 1.0 / 60));
-        device.finish();
-        device.poll();
-    }
-    addDrops(*made, a, false, device.backend() == Backend::cpu);
     return a;
 }
 

@@ -73,9 +73,10 @@ struct BodyHost {
     void (*added)(void* self, uint32_t id, const Body& body) = nullptr;
     void (*removed)(void* self, uint32_t id, size_t index) = nullptr;
     // On a GPU a step waits for the loads before each call of advance. With these two functions (both, or neither) it does not while bodies
-    // move freely: then the GPU moves them as FreeBodies does, and the host learns of it later. isFree, called once a frame: true if no
-    // body is held by the host or can touch anything but fluid in the next `seconds`, while its centre of mass stays in its ball (xyz m, w
-    // m, the radius). Then instead of advance, `passed` is called for each substep. Not called on the cpu.
+    // move freely: then the GPU moves them as FreeBodies does, and the host learns of it later. isFree: true if no body is held
+    // by the host or can touch anything but fluid in the next `seconds`, while its centre of mass stays in its ball (xyz m, w m, the
+    // radius). Then instead of advance, `passed` is called for each substep. isFree is called once a frame, and again with other balls
+    // where it has said no; on the cpu never.
     bool (*isFree)(void* self, std::span<const vec4> balls, double seconds) = nullptr;
     void (*passed)(void* self, double seconds) = nullptr;
 };

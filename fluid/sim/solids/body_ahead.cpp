@@ -125,9 +125,9 @@ void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
     const bool faulty = ahead_ && std::ranges::any_of(late_->faults, [](uint32_t f) { return f != 0; });
     if (exact || faulty) settle();
     for (size_t k = 0; k < bodies_.size(); ++k) {
-        if ((std::exchange(late_->faults[k], 0U) & BODY_STRAYED) == 0) continue;
-        late_->forecast.strayed(k);
-        ++strays_;
+        const bool strayed = (std::exchange(late_->faults[k], 0U) & BODY_STRAYED) != 0;
+        late_->forecast.frame(k, strayed);
+        if (strayed) ++strays_;
     }
     bool free = !exact && areFree();
     if (!free && isAhead()) {

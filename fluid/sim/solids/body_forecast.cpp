@@ -40,6 +40,17 @@ std::vector<BodyState> BodyForecast::at(double time) const {
     return then;
 }
 
+float BodyForecast::gain(size_t body, double time) const {
+    const float most = glm::length(states_[body].velocity) + kBlow;
+    return std::min(kReserve * std::max(glm::length(acceleration_[body]), kLeast) * static_cast<float>(time - time_), most);
+}
+
+void BodyForecast::frame(size_t body, bool strayed) {
+    constexpr float kMost = 64, kForgets = 0.98F;
+    float& t = trust_[body];
+    t = strayed ? std::min(2 * t, kMost) : std::max(kForgets * t, 1.0F);
+}
+
 float BodyForecast::reserve(size_t body, float gravity) const {
     return kReserve * trust_[body] * std::max({glm::length(acceleration_[body]), gravity, kLeast});
 }

@@ -229,13 +229,13 @@ Status BodyPasses::add(const Body& body, uint32_t id, const FluidParams& params)
     BodyLoads filter = filter_;
     filter.add(body, params);
     std::vector<uint32_t> moved = fits ? first_ : packed();
+    stay();  // makeRoom() drops the states on the device: even if something fails now, they are written again
     if (Status room = makeRoom(bodies_.size() < room_ ? room_ : std::max<size_t>(2 * room_, 1)); !room) return room;
     reserve(room_);
     moved.reserve(room_);
     host_.added(host_.self, id, body);
     filter_ = std::move(filter);
     first_ = std::move(moved);
-    stay();
     append(std::move(copy), id, fits ? at : held, std::move(volumes));
     upload();
     return ok();
@@ -321,7 +321,7 @@ float BodyPasses::fastest() const {
     for (size_t k = 0; k < states_.size(); ++k) {
         if (!bodies_[k].meetsWater) continue;
         float own = glm::length(states_[k].velocity) + glm::length(states_[k].spin) * reach_[k];
-        if (isAhead()) own += late_->forecast.reserve(k, 0.0F) * static_cast<float>(time_ - late_->forecast.time());
+        if (isAhead()) own += late_->forecast.gain(k, time_);
         speed = std::max(speed, own);
     }
     return speed;

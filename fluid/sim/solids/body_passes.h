@@ -84,7 +84,7 @@ class BodyPasses {
     // For pictures: states(), which are settled if a body has lately moved otherwise than expected.
     const std::vector<BodyState>& shown();
     void settleNear(const vec3& p, float spacing);  // only if a body may be at `p` (m)
-    uint64_t waits() const { return waits_; }       // of beginFrame and advance on a GPU, so far
+    uint64_t waits() const { return waits_; }       // of all functions here on a GPU, so far
     uint64_t strays() const { return strays_; }     // bodies that moved further than foreseen while they were free: on a GPU, late
     // The body for which the host last returned a state that is not finite; the body has kept its state.
     std::optional<size_t> misled() const { return misled_; }

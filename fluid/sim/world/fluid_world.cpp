@@ -194,7 +194,12 @@ void FluidWorld::withdrawLater(std::span<const ParticleClaim> claims, std::funct
                          then(removed);
                      });
     if (w.sleep) {
-        for (const ParticleClaim& c : claims) w.disturbAround({c.position - c.within, c.position + c.within});
+        Bounds around;
+        for (const ParticleClaim& c : claims) {
+            around.add(c.position - c.within);
+            around.add(c.position + c.within);
+        }
+        w.disturbAround(around);
         w.sleep->slotsChange();
     }
     w.grid->sortAsleep();

@@ -21,7 +21,10 @@ FluidWorld::FluidWorld() : impl_(std::make_unique<Impl>()) {}
 FluidWorld::~FluidWorld() = default;
 const FluidParams& FluidWorld::params() const { return impl_->params; }
 std::vector<float> FluidWorld::pressures() const { return impl_->method->pressures(*impl_->device, impl_->particles, impl_->step); }
-const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
+const FluidStats& FluidWorld::stats() const {
+    impl_->figures->bodyWaits = impl_->bodies.waits();  // with those of pictures, which come after a step
+    return *impl_->figures;
+}
 float FluidWorld::fastestFall() const { return impl_->fastestFall(); }
 double FluidWorld::time() const { return impl_->clock.time; }
 double FluidWorld::pending() const { return impl_->stepper.pending(); }

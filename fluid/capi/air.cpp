@@ -146,10 +146,16 @@ rivulet_status rivulet_world_air_drops(const rivulet_world* world, float* drops,
     return with(world, why, Needs::memory, [&]() -> Status {
         if (count == nullptr) return badInput("count is NULL: it receives the number of drops");
         const std::vector<AirDrop>& all = world->air.drops();
-        *count = all.size();
+        const std::vector<vec4> claimed = world->air.claimed();
+        *count = all.size() + claimed.size() / 2;
         for (size_t k = 0; drops != nullptr && k < std::min(capacity, all.size()); ++k) {
             put(vec3(all[k].position), drops + 4 * k);
             drops[4 * k + 3] = static_cast<float>(radiusOf(all[k]));
+        }
+        for (size_t k = all.size(); drops != nullptr && k < std::min(capacity, *count); ++k) {
+            const vec4& ball = claimed[2 * (k - all.size())];
+            put(vec3(ball), drops + 4 * k);
+            drops[4 * k + 3] = ball.w;
         }
         return ok();
     });

@@ -41,8 +41,9 @@ RIVULET_API rivulet_status rivulet_skin_create(rivulet_context* context, const r
                                                rivulet_error* why);
 RIVULET_API void rivulet_skin_destroy(rivulet_skin* skin);
 /* Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame), in the shape that
-   the last step gave it. Does not wait: of a skin that a GPU bends, that shape is known as it was two or three steps ago, moved on with
-   its velocity of then. */
+   the last step gave it. Of a skin that a GPU bends (`positions_buffer`), that shape is known as it was two or three steps ago, moved on
+   with its velocity of then. Waits for such a skin's shape in the two or three steps after it was first asked for, by this function or by
+   rivulet_world_step_skins, and where the GPU is 0.1 s behind; else it does not wait. */
 RIVULET_API rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why);
 /* Advances the skin by `seconds`; 0 or less: nothing happens. RIVULET_FAILED after rivulet_context_stop: while a stop is asked, nothing is
    stepped. If the stop interrupts a step, the drops are not valid any more: destroy the skin and create another. */
@@ -57,12 +58,12 @@ RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivul
 
 /* Steps skins, as rivulet_skin_step does each, and the drops in the air between them, which belong to the world: what leaves a skin falls,
    lands on a skin that it meets, goes into the world's water or is lost below `floor`; particles of the world that come down on a skin
-   become drops. After the world's step of the same `seconds`. Water is exchanged if rivulet_world_options.skins_bring is above 0; on a
-   GPU two or three steps late, without waiting. rivulet_world_draw draws the drops in the air and those that hang from the skins, which the
-   skins' maps then leave out. `skins`: of the world's context, others than in the last call if need be: drops in the air of a skin that is
-   not among them are lost. `inputs`: an array with one entry for each skin; NULL: defaults. A world's reset or restore leaves skins and
-   drops in the air as they are. RIVULET_FAILED: some skins and drops have been stepped, others not; all are valid unless a stop has
-   interrupted the step. */
+   become drops. After the world's step of the same `seconds`. Water is exchanged if rivulet_world_options.skins_bring is above 0; on a GPU
+   two or three steps late, without waiting. It waits for the shape of a skin only as rivulet_skin_add does. rivulet_world_draw draws the
+   drops in the air and those that hang from the skins, which the skins' maps then leave out. `skins`: of the world's context, others than
+   in the last call if need be: drops in the air of a skin that is not among them are lost. `inputs`: an array with one entry for each
+   skin; NULL: defaults. A world's reset or restore leaves skins and drops in the air as they are. RIVULET_FAILED: some skins and drops
+   have been stepped, others not; all are valid unless a stop has interrupted the step. */
 typedef struct rivulet_air {
     size_t size;
     const float* gravity;          /* m/s^2; NULL: fluid.gravity. That of `inputs` is not used */
@@ -74,7 +75,8 @@ typedef struct rivulet_air {
 RIVULET_API rivulet_status rivulet_world_step_skins(rivulet_world* world, rivulet_skin* const* skins, const rivulet_skin_inputs* inputs,
                                                     size_t count, double seconds, rivulet_air* air, rivulet_error* why);
 /* The drops in the air, for a host that draws them: 4 floats each, xyz m and radius m, of the first `capacity`; `count` receives their
-   number. */
+   number. After them, on a GPU: balls of particles that came down on a skin in the last two or three steps. The world has been asked to
+   give them up and has not answered yet; rivulet_air counts them once it has. */
 RIVULET_API rivulet_status rivulet_world_air_drops(const rivulet_world* world, float* drops, size_t capacity, size_t* count,
                                                    rivulet_error* why);
 

@@ -355,6 +355,13 @@ std::vector<vec4> AirDrops::drawn() const {
         all.emplace_back(vec3(d.position), static_cast<float>(radiusOf(d)));
         all.emplace_back(vec3(d.velocity), 0.0F);
     }
+    const std::vector<vec4> others = claimed();
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+}
+
+std::vector<vec4> AirDrops::claimed() const {
+    std::vector<vec4> all;
     for (const auto& claims : claims_)
         for (const Claim& c : claims->all) {
             all.emplace_back(vec3(c.position), static_cast<float>(c.radius));

@@ -1,10 +1,10 @@
 // AirDrops: the drops in the air between skins, a world's water and the ground. A drop that comes down on the world's water goes into
 // it; a particle of the world that comes down on a skin becomes drops. One mass: it is counted in picolitres.
 //
-// On a GPU nothing waits: the world answers two or three frames late. A drop flies on meanwhile; where its way ends before the answer, on a
-// skin or on the ground, it stays in sight there until then. Particles are known from a list that is as old, and are moved on as bodies
-// that fall; one that now comes down on a skin is claimed by its id. Until the world reports that it removed the particle, a ball is drawn
-// in its place, and counts() leaves it out, as the world's figures still have it.
+// On a GPU no exchange waits: the world answers two or three frames late. A drop flies on meanwhile; where its way ends before the answer,
+// on a skin or on the ground, it stays in sight there until then. Particles are known from a list that is as old, and are moved on as
+// bodies that fall; one that now comes down on a skin is claimed by its id. Until the world reports that it removed the particle, a ball is
+// drawn in its place, and counts() leaves it out, as the world's figures still have it.
 #pragma once
 
 #include <deque>
@@ -31,7 +31,8 @@ class AirDrops {
         double time = 0;                   // s, when the step begins; where the skins are
     };
     // Moves all drops on by `seconds`, and takes particles that come down on a skin. Before the skins' own step and after the world's.
-    // Does not wait. Error (failed): out of memory.
+    // Waits only for the shape of a skin that a GPU bends: until its first report, and where the GPU is 0.1 s behind
+    // (SurfaceFlow::shape). Error (failed): out of memory.
     Status step(const Inputs& inputs, double seconds);
     void add(const AirDrop& drop);
     // The same drops and counts, which later steps of this one do not change. The device must have finished and been polled.
@@ -40,7 +41,8 @@ class AirDrops {
     void renumber(std::span<const std::optional<uint32_t>> places);
 
     const std::vector<AirDrop>& drops() const { return drops_; }
-    std::vector<vec4> drawn() const;  // the balls, as FluidView::drops; with those of particles that are claimed
+    std::vector<vec4> drawn() const;    // the balls, as FluidView::drops; with those of particles that are claimed
+    std::vector<vec4> claimed() const;  // those alone
     // Those that have let go so lately that they are no balls yet.
     struct LetGo {
         HungDrop shape;

@@ -154,7 +154,8 @@ class SurfaceFlow {
     uint32_t room() const;
     // Where mesh()'s places are, m, in the skin's frame; w unused. Exact, but for a skin that deforms on a GPU (SurfaceFlowInputs::moved):
     // there as reported two or three steps ago, moved on with the velocity of then. Off by its acceleration since: 1.7 mm at
-    // 1 m/s^2 three steps late. Waits for the first report, and where a GPU is 0.1 s behind. Valid until the next step.
+    // 1 m/s^2 three steps late. Of such a skin it waits in the two or three steps after the first call, until the first report, and where
+    // a GPU is 0.1 s behind. Valid until the next step.
     struct Shape {
         uint64_t number = 0, from = 0;  // other numbers, other places
         std::span<const vec4> places = {};

@@ -89,6 +89,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     std::vector<uint32_t> placesOf;  // of each brim: how many
     std::vector<vec4> shown;         // the places of shape()
     uint64_t shownAs = UINT64_MAX, shownFrom = 0;
+    bool asked = false;                  // shape() has been called: from then on a GPU reports the places of each step
     std::optional<ThesisTables> thesis;  // of thesis mode
     std::optional<PendantDrop> pendant;  // of the others
     // Buffers that change from step to step, besides those that are sorted.

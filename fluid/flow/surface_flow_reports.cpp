@@ -65,6 +65,10 @@ void SurfaceFlow::Impl::takePlaces(const SurfaceFlowInputs& inputs) {
     movedAt = time;
     if (device->backend() == Backend::cpu) return;  // shape() reads it
     if (inputs.moved != nullptr) {
+        if (!asked) {  // nobody wants to know: shape() reads it the first time
+            reports->places.clear();
+            return;
+        }
         device->readLater(point, mesh.rest.size() * sizeof(vec4),
                           [to = std::weak_ptr(reports), at = time, of = moves](std::span<const std::byte> bytes) {
                               const std::shared_ptr<Reports> t = to.lock();
@@ -107,6 +111,7 @@ uint32_t SurfaceFlow::room() const {
 SurfaceFlow::Shape SurfaceFlow::shape() const {
     constexpr double kMostLate = 0.1;  // s
     Impl& w = *impl_;
+    w.asked = true;
     const Impl::Reports& known = *w.reports;
     if (!known.places.empty() && w.movedAt - known.placesAt > kMostLate) {
         w.device->finish();

@@ -1,6 +1,7 @@
 // LateView: what a window shows of a session whose data reach OpenGL through the host's memory (backend cl without shared memory): the
 // newest state that has arrived, one to three frames old, so that no frame waits. Particles, spray, drops and the places of solids are of
-// one time. Headless runs and recordings show the state of the frame itself: viewOf().
+// one time; floating bodies that the GPU moves are where they were expected at that time (FluidWorld::expectedBodies): within 0.5 s of a
+// blow that waits for their states, here as on backend gl. Headless runs and recordings show the state of the frame itself: viewOf().
 #pragma once
 
 #include <deque>

@@ -1,6 +1,7 @@
 #include "fluid/sim/sources/exchange_passes.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -10,11 +11,13 @@ namespace rivulet {
 
 namespace {
 
-// `found`: `most` positions, then as many velocities; `slots`: as many slots, then ids.
-std::vector<WorldParticle> listed(size_t count, size_t most, std::span<const vec4> found, std::span<const uint32_t> slots) {
+// Of as many particles as there are `positions`; w is the density ratio.
+std::vector<WorldParticle> listed(std::span<const vec4> positions, std::span<const vec4> velocities, std::span<const uint32_t> slots,
+                                  std::span<const uint32_t> ids) {
     std::vector<WorldParticle> all;
-    all.reserve(count);
-    for (size_t k = 0; k < count; ++k) all.push_back({vec3(found[k]), vec3(found[most + k]), found[k].w, slots[k], slots[most + k]});
+    all.reserve(positions.size());
+    for (size_t k = 0; k < positions.size(); ++k)
+        all.push_back({vec3(positions[k]), vec3(velocities[k]), positions[k].w, slots[k], ids[k]});
     // The atomic has them in any order.
     std::sort(all.begin(), all.end(), [](const WorldParticle& a, const WorldParticle& b) { return a.slot < b.slot; });
     return all;
@@ -66,7 +69,9 @@ std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const 
     list(step, particles, box, faster, looser, kMost);
     const size_t count = std::min<size_t>(device_->readAll<uint32_t>(counter_, 1)[0], kMost);
     if (count == 0) return {};
-    return listed(count, kMost, device_->readAll<vec4>(found_, kMost + count), device_->readAll<uint32_t>(slots_, kMost + count));
+    const std::vector<vec4> found = device_->readAll<vec4>(found_, kMost + count);
+    const std::vector<uint32_t> slots = device_->readAll<uint32_t>(slots_, kMost + count);
+    return listed(std::span(found).first(count), std::span(found).subspan(kMost), slots, std::span(slots).subspan(kMost));
 }
 
 // Reads arrive in the order of their requests.
@@ -78,17 +83,19 @@ void ExchangePasses::withinLater(const StepParams& step, const Particles& partic
     }
     struct Answer {
         size_t count = 0;
-        std::vector<vec4> found;
+        std::vector<vec4> positions, velocities;
     };
     const auto answer = std::make_shared<Answer>();
     list(step, particles, box, faster, looser, kMost);
     device_->readLater(counter_, sizeof(uint32_t),
                        [answer](std::span<const std::byte> bytes) { answer->count = std::min<size_t>(as<uint32_t>(bytes)[0], kMost); });
     device_->readLater(found_, 2 * kMost * sizeof(vec4), [answer](std::span<const std::byte> bytes) {
-        if (answer->count > 0) answer->found.assign(as<vec4>(bytes).begin(), as<vec4>(bytes).end());
+        const std::span<const vec4> found = as<vec4>(bytes), moving = found.subspan(kMost);
+        answer->positions.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(answer->count));
+        answer->velocities.assign(moving.begin(), moving.begin() + static_cast<std::ptrdiff_t>(answer->count));
     });
     device_->readLater(slots_, 2 * kMost * sizeof(uint32_t), [answer, then = std::move(then)](std::span<const std::byte> bytes) {
-        then(listed(answer->count, kMost, answer->found, as<uint32_t>(bytes)));
+        then(listed(answer->positions, answer->velocities, as<uint32_t>(bytes), as<uint32_t>(bytes).subspan(kMost)));
     });
 }
 

@@ -21,7 +21,10 @@ FluidWorld::FluidWorld() : impl_(std::make_unique<Impl>()) {}
 FluidWorld::~FluidWorld() = default;
 const FluidParams& FluidWorld::params() const { return impl_->params; }
 std::vector<float> FluidWorld::pressures() const { return impl_->method->pressures(*impl_->device, impl_->particles, impl_->step); }
-const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
+const FluidStats& FluidWorld::stats() const {
+    impl_->figures->bodyWaits = impl_->bodies.waits();  // with those of pictures, which come after a step
+    return *impl_->figures;
+}
 float FluidWorld::fastestFall() const { return impl_->fastestFall(); }
 double FluidWorld::time() const { return impl_->clock.time; }
 double FluidWorld::pending() const { return impl_->stepper.pending(); }
@@ -194,7 +197,12 @@ void FluidWorld::withdrawLater(std::span<const ParticleClaim> claims, std::funct
                          then(removed);
                      });
     if (w.sleep) {
-        for (const ParticleClaim& c : claims) w.disturbAround({c.position - c.within, c.position + c.within});
+        Bounds around;
+        for (const ParticleClaim& c : claims) {
+            around.add(c.position - c.within);
+            around.add(c.position + c.within);
+        }
+        w.disturbAround(around);
         w.sleep->slotsChange();
     }
     w.grid->sortAsleep();

@@ -65,8 +65,7 @@ class FluidWorld {
     // Error, until reset(), restore() or continueFrom() set valid values; the flag must be false by then. A step that begins while the flag
     // is true does nothing, and the world stays valid. create() returns an Error (failed) if it is interrupted.
     bool interrupted() const;
-    // The part of a frame that step() would simulate, s: time beyond fluid.longestFrame is dropped, and reported. For hosts that cut
-    // frames.
+    // The part of a frame that step() would simulate, s, for hosts that cut frames: time beyond fluid.longestFrame is dropped and reported.
     double acceptedSeconds(double seconds);
     // The first work of the next step is to find each particle's cell. Another device can do it meanwhile (cooperation, thesis 2.3): it
     // runs the kernel fluid/grid/cell_of with this, and the host passes the result to setCells before the next step. Empty: before the
@@ -79,8 +78,7 @@ class FluidWorld {
     std::optional<CellWork> cellWork();
     void setCells(std::span<const uint32_t> cells);  // ignored if the world has changed since cellWork()
     void reset();                                    // back to t = 0
-    // Sets values that can change between steps; `fixed` values stay. Error (badInput): a value out of its range; nothing
-    // has changed then.
+    // Sets values that can change between steps; `fixed` ones stay. Error (badInput): a value out of its range; nothing has changed then.
     Status setParams(const FluidParams&);
     Status setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces. Error: as create
     void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, one group per force
@@ -123,8 +121,9 @@ class FluidWorld {
     // world's own liquid; m, m/s. It is pending until it suffices for a particle, which is spawned above the place. Volume is conserved.
     void deposit(const vec3& place, const vec3& velocity, double volume);
     // within: the particles now in a box that are faster (m/s) or of a lower density ratio than given, 16,384 at most. withdraw: removes
-    // some of them, spacing^3 m^3 each. Both wait. The others do not: `then` is called once, 2 to 3 frames later on a GPU, on the cpu
-    // before they return; it may outlive the world. `claims`: in ascending order of ids, each once; `then` receives 1 of each removed.
+    // some of them, spacing^3 m^3 each. Both wait. withinLater and withdrawLater do not wait: they call `then` once, 2 to 3 frames later
+    // on a GPU, on the cpu before they return; it may outlive the world. `claims`: in ascending order of ids, each once, 16,384 at most. A
+    // particle that has moved away from the claimed place stays. `then` receives, for each claim, 1 if its particle was removed, else 0.
     std::vector<WorldParticle> within(const Bounds& box, float faster = 0, float looser = 1.0e9F);
     void withdraw(std::span<const uint32_t> slots);
     void withinLater(const Bounds& box, float faster, float looser, std::function<void(std::span<const WorldParticle>)> then);
@@ -187,8 +186,9 @@ class FluidWorld {
     // allTaken; the params that are `fixed` or the solids differ. The world is then as it was.
     Status restore(WorldState& state);
     // Continues from another world with the same box and spacing, with solids at `poses` and with `shapes` (as FluidInputs; all of them).
-    // It takes over the time, the particles except those inside a solid here, the bodies if they are the same, and the foam if it has as
-    // many slots. Counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box, spacing, liquids; few slots.
+    // It takes over the time, the particles except those inside a solid here, the bodies if they are the same, and the foam if this world
+    // has as many slots for it. The counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box or spacing,
+    // liquids that this world does not have, more particles than this world has slots.
     Status continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 
   private:

@@ -37,7 +37,7 @@ struct FluidStats {
     double stepped = 0;                // particles times substeps, since the start: without those asleep, late on a GPU
     std::optional<double> residual;    // mean compression after the last of them, as the solver predicts it; nothing: it predicts none
     double dtMin = 0, dtMax = 0;       // s, since the start
-    uint64_t bodyWaits = 0;            // times that a GPU's loads or states of bodies were waited for, since the start
+    uint64_t bodyWaits = 0;            // times that a GPU's loads or states of bodies were waited for, since the start; never late
     uint64_t bodyStrays = 0;           // bodies that moved further in a frame than foreseen while the GPU moved them, since the start
     ProbeFrame loads = {};             // what fluid.probes measured, of its own last frame
     std::vector<std::string> limited;  // sentences: what the program limited and why, each once

@@ -24,4 +24,12 @@ packages {libglfw3,libegl,libgl,libimgui,libassimp,libbullet,libgtest}-dev:arm64
 inside bash -c 'export PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig && cmake -S /src -B /build-arm64-tests -G Ninja \
         -DCMAKE_TOOLCHAIN_FILE=/arm64.cmake -DCMAKE_BUILD_TYPE=Release -DRIVULET_TESTS=ON &&
     cmake --build /build-arm64-tests --target test_unit test_physics' || fail "the tests were not built for arm64."
+# Tests start the reader of models as a process of its own: Linux must know what runs it.
+binfmt=/proc/sys/fs/binfmt_misc
+[ -e $binfmt/register ] || mount -t binfmt_misc none $binfmt || fail "Linux has no binfmt_misc."
+if [ ! -e $binfmt/rivulet-aarch64 ]; then
+    printf ':rivulet-aarch64:M::\\x7fELF\\x02\\x01\\x01%s\\x02\\x00\\xb7\\x00:%s\\x00%s\\xfe\\xff\\xff\\xff:%s:OCF' "$(printf '\\x00%.0s' {1..9})" \
+        "$(printf '\\xff%.0s' {1..7})" "$(printf '\\xff%.0s' {1..8})" "$system/usr/bin/qemu-aarch64" >$binfmt/register || fail "binfmt_misc refuses qemu-aarch64."
+    trap 'echo -1 >$binfmt/rivulet-aarch64; unmount' EXIT
+fi
 inside ctest --test-dir /build-arm64-tests -R '^(unit|physics)\.' -L fast --timeout 1200 || fail "a test failed."

@@ -84,7 +84,7 @@ std::vector<std::byte> sortedWords(std::span<const std::byte> bytes) {
 bool looksThroughNeighbours(const std::string& path) {
     const Result<std::string> text = readFile(std::string(RIVULET_SOURCE_DIR) + "/shaders/" + path + ".kernel");
     EXPECT_TRUE(text) << path;
-    return text && text->find("NEIGHBOR_TYPE") != std::string::npos;
+    return text && (text->find("NEIGHBOR_TYPE") != std::string::npos || text->find("NEIGHBORS_KEPT") != std::string::npos);
 }
 
 void compare(std::span<const std::byte> there, std::span<const std::byte> here, Compared& c) {

@@ -25,6 +25,7 @@ struct KernelWork {
     std::string name;
     std::string_view per = "step";  // step | iteration | frame
     double calls = 0;               // in one of these
+    double frameCalls = 0;          // in a frame, more
     double threads = 0;             // a dispatch
     std::array<double, kGpuOps> count{};
     double step8 = 1, step32 = 1, step64 = 1;  // operations in step over the mean
@@ -97,6 +98,7 @@ std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view meth
         w.name = name;
         w.per = (*s.last)[table.column("per")];
         w.calls = numberIn((*s.last)[table.column("calls")]);
+        w.frameCalls = numberIn((*s.last)[table.column("frame_calls")]);
         w.threads = fixed ? *s.threads.begin() : at("threads") * particles;
         for (size_t k = 0; k < kGpuOps; ++k) w.count[k] = at(kColumns[k]);
         // In step over alone: of the largest world counted, in which more threads are at walls than in larger ones.
@@ -246,7 +248,8 @@ FrameWork measuredWork(std::string_view method, double particles) {
 FrameCost predictSteps(const GpuSpec& gpu, std::string_view method, double particles, const FrameWork& work, std::string_view counts) {
     std::vector<PassCost> passes;
     for (const KernelWork& w : kernelsOf(counts, method, particles)) {
-        const double dispatches = w.calls * (w.per == "frame" ? 1 : work.substeps) * (w.per == "iteration" ? work.iterations : 1);
+        const double dispatches =
+            w.calls * (w.per == "frame" ? 1 : work.substeps) * (w.per == "iteration" ? work.iterations : 1) + w.frameCalls;
         const DispatchCost one = dispatchOf(gpu, w);
         passes.push_back(
             {w.name, 1000 * one.seconds * dispatches, dispatches, one.bound, one.operations * dispatches, one.bytes * dispatches});

@@ -95,11 +95,13 @@ def count_kernels(program, to, spacings, methods):
                         calls, per = 1, "frame"
                     elif method == "pbf" and path == "fluid/solids/near_walls":
                         calls -= 1 / substeps  # for the figures of the frame
-                    rows.append({"method": method, "particles": particles, "kernel": path, "per": per, "calls": f"{calls:g}",
+                    # The figures of a frame need walls and densities where the last step has left the particles.
+                    more = 1 if method == "pbf" and path in ("fluid/solids/near_walls", "fluid/methods/pbf_lambda") else 0
+                    rows.append({"method": method, "particles": particles, "kernel": path, "per": per, "calls": f"{calls:g}", "frame_calls": more,
                                  "waves": f"{waves.get(path, 1):.3g}", **row})
                 print(f"{method}, {particles} particles: {substeps} substeps", flush=True)
     write(to / "kernels.csv", "What the kernels of dam_break do in a dispatch, a thread, means: counted in Oclgrind by tests/gpu_cost/count.py kernels.\n"
-          "# per: calls are in a step, an iteration or a frame. waves: share of a GPU's waves that registers allow. step8, step32, step64: operations\n"
+          "# per: calls are in a step, an iteration or a frame; frame_calls: in a frame, more. waves: share of a GPU's waves that registers allow. step8, step32, step64: operations\n"
           "# of a thread where so many go through the code in step. longest: operations and loads of the longest thread of a dispatch. sectors:\n"
           "# 32 bytes, of the accesses of 32 threads together, over 32. Bytes: read and written, each sector once a dispatch; group_bytes: once a\n"
           "# work group.", rows)

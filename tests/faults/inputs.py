@@ -229,7 +229,7 @@ def absurd(faults):
 def repros(faults):
     tasks = []
     row = faults.row("little memory", "a limit of memory (ulimit -v), and 8 overlapping blocks, which need long neighbour lists")
-    for megabytes in range(40, 80, 8 if faults.quick else 2):
+    for megabytes in range(56, 113, 16 if faults.quick else 2):
         tasks.append(lambda m=megabytes: offer(faults, row, "run dense.json --no-render --backend cpu --frames 1 --stats n.json", "dense.json", dense(8), ("n.json",),
                                                limits=[(resource.RLIMIT_AS, m << 20)]))
     faults.all(tasks)

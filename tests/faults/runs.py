@@ -16,7 +16,8 @@ def fixture(faults):
             file.write(text)
     shutil.copy(os.path.join(faults.environment["RIVULET_ASSETS"], "meshes", "paddle.obj"), folder)
     words = "run s.json --no-render --backend cpu --frames 2 --record r.rrec --save s.rstate --stats n.json"
-    made = watch.run([faults.program, *words.split()], folder, dict(faults.environment, XDG_CACHE_HOME=os.path.join(folder, "cache")))
+    made = watch.run([faults.program, *words.split()], folder, dict(faults.environment, XDG_CACHE_HOME=os.path.join(folder, "cache")),
+                     min(os.sched_getaffinity(0)))  # on one core, as the cases: a recording names how many there were
     if made.status != 0:
         raise SystemExit(f"faults: the inputs cannot be made: {made.err}")
     return {name: data for name, data in cases.files_in(folder).items() if name in cases.INPUTS}

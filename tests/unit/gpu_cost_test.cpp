@@ -83,7 +83,7 @@ TEST(GpuCost, FasterGpusAreFasterAndMoreParticlesCostMore) {
 TEST(GpuCost, APictureInSoftwareTakesItsFragmentsAndItsReads) {
     GpuSpec none;
     none.bandwidth = 1.0e30;
-    EXPECT_EQ(predictPicture(none, 8192).ms(), 0);
+    EXPECT_LT(predictPicture(none, 8192).ms(), 1.0e-12);  // of memory
     const auto with = [&](double fragment, double filtered, double fetched) {
         GpuSpec g = none;
         g.fragmentSeconds = fragment;

@@ -65,7 +65,7 @@ void SurfaceFlow::Impl::takePlaces(const SurfaceFlowInputs& inputs) {
     movedAt = time;
     if (device->backend() == Backend::cpu) return;  // shape() reads it
     if (inputs.moved != nullptr) {
-        if (!asked) {  // nobody wants to know: shape() reads it the first time
+        if (!asked) {  // shape() was not called yet: its first call reads the places
             reports->places.clear();
             return;
         }

@@ -40,7 +40,7 @@ std::vector<Part> partsOf(const FluidWorld& world, RecordedFrame& frame) {
     return parts;
 }
 
-// Keeps the items whose index `kept` has, in order.
+// Removes all items but those at the indices in `kept`, which are sorted.
 template <class T>
 void keepChosen(const std::vector<uint32_t>& kept, std::vector<T>& of) {
     if (of.empty()) return;

@@ -35,7 +35,7 @@ class LateView {
     void dropOlder();
 
     std::deque<Frame> frames_;  // in the order of time
-    Frame spare_;               // whose memory is used again
+    Frame spare_;               // a frame that was shown: its memory is reused
     const Device* device_ = nullptr;
 };
 

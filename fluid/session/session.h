@@ -68,7 +68,7 @@ class Session {
     Bounds boundsOf(const Thing& thing) const { return solids_.boundsOf(scene_, thing); }
     // Pulls at a body (solids_bullet.h). Nothing: ends.
     void hold(const std::optional<BulletSolids::Hold>& hand) { solids_.hold(hand); }
-    // Says that nobody draws solids(): from now on steps do not place the nodes of bodies, which waits for a GPU after a blow.
+    // solids() will not be drawn: from now on steps do not place the nodes of bodies. Placing them can wait for a GPU.
     void drawNothing() { draws_ = false; }
     // FluidInputs::mostMs of the next steps.
     void limitFrames(double ms) { mostMs_ = ms; }

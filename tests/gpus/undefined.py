@@ -149,7 +149,7 @@ class Uniformity:
         else:
             self.divergent.setdefault(f.result, set())
         after = postdominators(f, exits)
-        deciding = {}                          # label -> labels whose last branch decides whether it runs
+        deciding = {}                          # label -> blocks whose branch decides whether this block runs
         for b in f.order:
             ways = list(b.next) + ([None] if b.label in exits and b.next else [])
             if len(set(ways)) < 2:

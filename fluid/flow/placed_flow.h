@@ -32,7 +32,7 @@ struct AirDrop {
     uint32_t skin = 0;                  // index of the skin that it left: it has that skin's liquid and wind
     std::optional<HungDrop> hung = {};  // that let go: what it was, `age` before
     double age = 0;                     // s
-    // Set by AirDrops, by whose order they count: which drop it is, and the last question about the water in its way.
+    // Set by AirDrops: the number of the drop, in the order in which drops were added, and of the last query for water on its path.
     uint64_t number = 0, asked = 0;
     // The end of its way, which waits for the answers to its questions: it stays in sight there. No skin: it is below the floor.
     struct End {

@@ -14,6 +14,15 @@ namespace {
 
 class SkinExchangeParity : public testing::TestWithParam<const char*> {};
 
+// A square of 0.2 m and two triangles.
+const std::vector<vec3> kCorners = {vec3(0), vec3(0.2F, 0, 0), vec3(0.2F, 0, 0.2F), vec3(0, 0, 0.2F)};
+const std::vector<uint32_t> kIndices = {0, 2, 1, 0, 3, 2};
+Result<SurfaceFlow> square(Device& device) {
+    Result<FlowMesh> mesh = makeFlowMesh({kCorners, kIndices, {}, {}});
+    if (!mesh) return mesh.error();
+    return SurfaceFlow::create(device, std::move(*mesh), {.capacity = 64});
+}
+
 // A jet falls on a cow: its particles become drops, run down, drip, and become particles of the basin.
 TEST_P(SkinExchangeParity, ItIsTheSameWaterInEveryFrame) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
@@ -52,11 +61,7 @@ TEST_P(SkinExchangeParity, ItIsTheSameWaterInEveryFrame) {
 TEST_P(SkinExchangeParity, NoDropIsRefusedThatFoundRoom) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
-    const std::vector<vec3> corners = {vec3(0), vec3(0.2F, 0, 0), vec3(0.2F, 0, 0.2F), vec3(0, 0, 0.2F)};
-    const std::vector<uint32_t> indices = {0, 2, 1, 0, 3, 2};
-    Result<FlowMesh> mesh = makeFlowMesh({corners, indices, {}, {}});
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    Result<SurfaceFlow> flow = SurfaceFlow::create(*gpu->device, std::move(*mesh), {.capacity = 64});
+    Result<SurfaceFlow> flow = square(*gpu->device);
     ASSERT_TRUE(flow) << flow.error().message;
     uint32_t added = 0;
     for (int k = 0; k < 60; ++k) {
@@ -78,19 +83,15 @@ TEST_P(SkinExchangeParity, NoDropIsRefusedThatFoundRoom) {
 TEST_P(SkinExchangeParity, ABendingSkinIsWhereItsMotionHasIt) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
-    const std::vector<vec3> corners = {vec3(0), vec3(0.2F, 0, 0), vec3(0.2F, 0, 0.2F), vec3(0, 0, 0.2F)};
-    const std::vector<uint32_t> indices = {0, 2, 1, 0, 3, 2};
-    Result<FlowMesh> mesh = makeFlowMesh({corners, indices, {}, {}});
-    ASSERT_TRUE(mesh) << mesh.error().message;
     Device& device = *gpu->device;
-    Result<SurfaceFlow> flow = SurfaceFlow::create(device, std::move(*mesh), {.capacity = 64});
-    Result<Buffer> moved = device.allocate(corners.size() * sizeof(vec4));
+    Result<SurfaceFlow> flow = square(device);
+    Result<Buffer> moved = device.allocate(kCorners.size() * sizeof(vec4));
     ASSERT_TRUE(flow && moved);
     const auto places = [&](double time, double speed, double acceleration) {
         std::vector<vec4> all;
-        for (size_t k = 0; k < corners.size(); ++k)
+        for (size_t k = 0; k < kCorners.size(); ++k)
             all.emplace_back(
-                corners[k] + vec3(0, static_cast<float>((speed * time + 0.5 * acceleration * time * time) * (k < 2 ? 1 : 0.5)), 0), 0.0F);
+                kCorners[k] + vec3(0, static_cast<float>((speed * time + 0.5 * acceleration * time * time) * (k < 2 ? 1 : 0.5)), 0), 0.0F);
         return all;
     };
     constexpr double kFrame = 1.0 / 60, kAcceleration = 2;
@@ -113,14 +114,12 @@ TEST_P(SkinExchangeParity, ABendingSkinIsWhereItsMotionHasIt) {
             }
         }
     // Positions of the host are known at once.
-    std::vector<vec3> own = corners;
+    std::vector<vec3> own = kCorners;
     for (vec3& p : own) p.y += 0.3F;
     EXPECT_TRUE(flow->step({.positions = own}, kFrame));
     for (const vec4& p : flow->shape().places) EXPECT_EQ(p.y, 0.3F);
     // Who asks for the first time sees the places of now, whatever was known before.
-    Result<FlowMesh> again = makeFlowMesh({corners, indices, {}, {}});
-    ASSERT_TRUE(again) << again.error().message;
-    Result<SurfaceFlow> unseen = SurfaceFlow::create(device, std::move(*again), {.capacity = 64});
+    Result<SurfaceFlow> unseen = square(device);
     ASSERT_TRUE(unseen) << unseen.error().message;
     EXPECT_TRUE(unseen->step({.positions = own}, kFrame));
     for (int k = 1; k <= 8; ++k) {

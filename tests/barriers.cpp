@@ -1,15 +1,15 @@
 #include "tests/barriers.h"
 
-#include <EGL/egl.h>
 #include <dlfcn.h>
 #include <rivulet_glad/gl.h>
 
 #include <array>
-#include <cstring>
 #include <map>
 #include <mutex>
 #include <set>
 #include <string_view>
+
+#include "tests/replaced_gl.h"
 
 namespace rivulet::barriers {
 namespace {
@@ -417,45 +417,34 @@ WATCH(void, glLinkProgram, GLuint program) {
     for (GLsizei k = 0; k < count; ++k) p.text += c.shaders[attached[k]];
 }
 
-using Function = __eglMustCastToProperFunctionPointerType;
-
-struct Row {
-    const char* name;
-    Function watch;
-    void (*keep)(Function own);
-};
-#define WATCH_ROW(name)                                                                                                                   \
-    {                                                                                                                                     \
-#name, reinterpret_cast < Function>(watch_##name), [](Function own) { own_##name = reinterpret_cast<decltype(own_##name)>(own); } \
-    }
-const Row rows[] = {
-    WATCH_ROW(glMemoryBarrier),
-    WATCH_ROW(glDispatchCompute),
-    WATCH_ROW(glDispatchComputeIndirect),
-    WATCH_ROW(glDrawArrays),
-    WATCH_ROW(glDrawArraysInstanced),
-    WATCH_ROW(glDrawArraysIndirect),
-    WATCH_ROW(glDrawElements),
-    WATCH_ROW(glDrawElementsInstanced),
-    WATCH_ROW(glDrawElementsIndirect),
-    WATCH_ROW(glCopyNamedBufferSubData),
-    WATCH_ROW(glNamedBufferSubData),
-    WATCH_ROW(glGetNamedBufferSubData),
-    WATCH_ROW(glClearNamedBufferData),
-    WATCH_ROW(glMapNamedBufferRange),
-    WATCH_ROW(glTextureSubImage2D),
-    WATCH_ROW(glTextureSubImage3D),
-    WATCH_ROW(glReadPixels),
-    WATCH_ROW(glGetTextureSubImage),
-    WATCH_ROW(glCreateBuffers),
-    WATCH_ROW(glGenBuffers),
-    WATCH_ROW(glCreateTextures),
-    WATCH_ROW(glShaderSource),
-    WATCH_ROW(glLinkProgram),
+const testing::ReplacedGl rows[] = {
+    REPLACED_GL(watch, glMemoryBarrier),
+    REPLACED_GL(watch, glDispatchCompute),
+    REPLACED_GL(watch, glDispatchComputeIndirect),
+    REPLACED_GL(watch, glDrawArrays),
+    REPLACED_GL(watch, glDrawArraysInstanced),
+    REPLACED_GL(watch, glDrawArraysIndirect),
+    REPLACED_GL(watch, glDrawElements),
+    REPLACED_GL(watch, glDrawElementsInstanced),
+    REPLACED_GL(watch, glDrawElementsIndirect),
+    REPLACED_GL(watch, glCopyNamedBufferSubData),
+    REPLACED_GL(watch, glNamedBufferSubData),
+    REPLACED_GL(watch, glGetNamedBufferSubData),
+    REPLACED_GL(watch, glClearNamedBufferData),
+    REPLACED_GL(watch, glMapNamedBufferRange),
+    REPLACED_GL(watch, glTextureSubImage2D),
+    REPLACED_GL(watch, glTextureSubImage3D),
+    REPLACED_GL(watch, glReadPixels),
+    REPLACED_GL(watch, glGetTextureSubImage),
+    REPLACED_GL(watch, glCreateBuffers),
+    REPLACED_GL(watch, glGenBuffers),
+    REPLACED_GL(watch, glCreateTextures),
+    REPLACED_GL(watch, glShaderSource),
+    REPLACED_GL(watch, glLinkProgram),
 };
 
 template <class F>
-void keep(F& own, Function (*find)(const char*), const char* name) {
+void keep(F& own, testing::GlFunction (*find)(const char*), const char* name) {
     own = reinterpret_cast<F>(find(name));
 }
 
@@ -481,9 +470,9 @@ void leaveOutBarrier(size_t n) {
 
 }  // namespace rivulet::barriers
 
-extern "C" __eglMustCastToProperFunctionPointerType eglGetProcAddress(const char* name) {
+extern "C" rivulet::testing::GlFunction eglGetProcAddress(const char* name) {
     using namespace rivulet::barriers;
-    static const auto find = reinterpret_cast<Function (*)(const char*)>(dlsym(RTLD_NEXT, "eglGetProcAddress"));
+    static const auto find = reinterpret_cast<rivulet::testing::GlFunction (*)(const char*)>(dlsym(RTLD_NEXT, "eglGetProcAddress"));
     if (own_glGetIntegerv == nullptr) {
         keep(own_glGetIntegerv, find, "glGetIntegerv");
         keep(own_glGetIntegeri_v, find, "glGetIntegeri_v");
@@ -496,12 +485,5 @@ extern "C" __eglMustCastToProperFunctionPointerType eglGetProcAddress(const char
         keep(own_glGetTextureLevelParameteriv, find, "glGetTextureLevelParameteriv");
         keep(own_glGetAttachedShaders, find, "glGetAttachedShaders");
     }
-    const Function own = find(name);
-    if (own == nullptr) return own;
-    for (const Row& row : rows)
-        if (std::strcmp(row.name, name) == 0) {
-            row.keep(own);
-            return row.watch;
-        }
-    return own;
+    return rivulet::testing::replaced(rows, name, find(name));
 }

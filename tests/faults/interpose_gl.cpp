@@ -1,10 +1,8 @@
 // OpenGL, whose functions a program finds by eglGetProcAddress().
-#include <EGL/egl.h>
 #include <rivulet_glad/gl.h>
 
-#include <cstring>
-
 #include "tests/faults/interposer.h"
+#include "tests/replaced_gl.h"
 
 using namespace faults;
 
@@ -93,47 +91,29 @@ FAULTS_GL(void, glGetTextureSubImage, GLuint texture, GLint level, GLint x, GLin
     if (!lost()) own_glGetTextureSubImage(texture, level, x, y, z, width, height, depth, format, type, bytes, pixels);
 }
 
-using Function = __eglMustCastToProperFunctionPointerType;
-
-struct Row {
-    const char* name;
-    Function fails;
-    void (*keep)(Function own);
-};
-#define FAULTS_ROW(name)                                                                                                                 \
-    Row {                                                                                                                                \
-#name, reinterpret_cast < Function>(fail_##name), [](Function own) { own_##name = reinterpret_cast<decltype(own_##name)>(own); } \
-    }
-const Row rows[] = {
-    FAULTS_ROW(glGetError),
-    FAULTS_ROW(glGetGraphicsResetStatus),
-    FAULTS_ROW(glNamedBufferStorage),
-    FAULTS_ROW(glTextureStorage2D),
-    FAULTS_ROW(glTextureStorage3D),
-    FAULTS_ROW(glMapNamedBufferRange),
-    FAULTS_ROW(glGetShaderiv),
-    FAULTS_ROW(glGetProgramiv),
-    FAULTS_ROW(glFenceSync),
-    FAULTS_ROW(glClientWaitSync),
-    FAULTS_ROW(glCheckNamedFramebufferStatus),
-    FAULTS_ROW(glDispatchCompute),
-    FAULTS_ROW(glDrawArrays),
-    FAULTS_ROW(glDrawArraysInstanced),
-    FAULTS_ROW(glDrawElements),
-    FAULTS_ROW(glDrawElementsInstanced),
-    FAULTS_ROW(glGetNamedBufferSubData),
-    FAULTS_ROW(glGetTextureSubImage),
+const rivulet::testing::ReplacedGl rows[] = {
+    REPLACED_GL(fail, glGetError),
+    REPLACED_GL(fail, glGetGraphicsResetStatus),
+    REPLACED_GL(fail, glNamedBufferStorage),
+    REPLACED_GL(fail, glTextureStorage2D),
+    REPLACED_GL(fail, glTextureStorage3D),
+    REPLACED_GL(fail, glMapNamedBufferRange),
+    REPLACED_GL(fail, glGetShaderiv),
+    REPLACED_GL(fail, glGetProgramiv),
+    REPLACED_GL(fail, glFenceSync),
+    REPLACED_GL(fail, glClientWaitSync),
+    REPLACED_GL(fail, glCheckNamedFramebufferStatus),
+    REPLACED_GL(fail, glDispatchCompute),
+    REPLACED_GL(fail, glDrawArrays),
+    REPLACED_GL(fail, glDrawArraysInstanced),
+    REPLACED_GL(fail, glDrawElements),
+    REPLACED_GL(fail, glDrawElementsInstanced),
+    REPLACED_GL(fail, glGetNamedBufferSubData),
+    REPLACED_GL(fail, glGetTextureSubImage),
 };
 
 }  // namespace
 
-extern "C" Function eglGetProcAddress(const char* name) {
-    const Function own = FAULTS_NEXT(eglGetProcAddress)(name);
-    if (own == nullptr) return own;
-    for (const Row& row : rows)
-        if (std::strcmp(row.name, name) == 0) {
-            row.keep(own);
-            return row.fails;
-        }
-    return own;
+extern "C" rivulet::testing::GlFunction eglGetProcAddress(const char* name) {
+    return rivulet::testing::replaced(rows, name, FAULTS_NEXT(eglGetProcAddress)(name));
 }

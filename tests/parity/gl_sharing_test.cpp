@@ -70,7 +70,8 @@ void CL_CALLBACK gone(cl_mem memory, void*) {
     if (std::this_thread::get_id() == played.home && glIsBuffer(played.wrapped.at(memory)) == GL_FALSE) ++std::atomic_ref(played.outlived);
 }
 
-// Buffers that still live, as many as `expected` if they soon are: PoCL frees one when the last command with it has ended, on its own thread.
+// Buffers that still live, as many as `expected` if they soon are: PoCL frees one when the last command with it has ended, on its own
+// thread.
 int liveSoon(int expected) {
     std::atomic_ref live(played.live);
     for (int k = 0; k < 2000 && live != expected; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -107,8 +107,8 @@ void AirDrops::listParticles(const Inputs& inputs, double seconds) {
                       });
 }
 
-// A particle whose path, extended by half a spacing, meets a skin becomes drops side by side over its width: those whose own path meets a
-// skin land, the others fly on. If the skin has no free slots the particle passes.
+// A particle becomes drops if its path, half a spacing longer, meets a skin. The drops lie side by side over its width. Those whose own
+// path meets the skin land; the others fly on. If the skin has no free slots, the particle passes.
 void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
     constexpr double kLongest = 0.1;  // s
     constexpr double kAside = 0.1;    // of its way, chosen by eye

@@ -97,7 +97,8 @@ std::string otherMinAndMax(NanHabit habit) {
             text += fmt::format("FREE {2} free{0}({2} a, {2} b) {{ return a {1} b ? a : b; }}\n", name, less, type);
         text += fmt::format(
             "FREE vec2 free{0}(vec2 a, vec2 b) {{ return vec2(free{0}(a.x, b.x), free{0}(a.y, b.y)); }}\n"
-            "FREE vec3 free{0}(vec3 a, vec3 b) {{ return vec3(free{0}(a.x, b.x), free{0}(a.y, b.y), free{0}(a.z, b.z)); }}\n",
+            "FREE vec3 free{0}(vec3 a, vec3 b) {{ return vec3(free{0}(a.x, b.x), free{0}(a.y, b.y), free{0}(a.z, b.z)); }}\n"
+            "FREE vec4 free{0}(vec4 a, vec4 b) {{ return vec4(free{0}(a.xyz, b.xyz), free{0}(a.w, b.w)); }}\n",
             name);
     }
     for (const char* type : {"float", "int", "uint"})

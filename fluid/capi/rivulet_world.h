@@ -109,6 +109,10 @@ RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet
 /* The states of the bodies now, in the order of rivulet_world_body_ids; `count` must be their number. Without rivulet_body_host a GPU moves
    the bodies; then this call and rivulet_world_body wait for it, the steps do not. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
+/* The same without waiting, for pictures: where a GPU moves the bodies, they are continued from their states two or three frames earlier,
+   and a sudden blow shows as late; else they are exact. */
+RIVULET_API rivulet_status rivulet_world_expected_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count,
+                                                         rivulet_error* why);
 /* Bodies that come and go while the world runs, within the memory of fluid.bodies.maxSamples. Ids are as those of walls; those of
    rivulet_world_options have their index. A body with a mesh is made ready beside the frames, on one core. It enters the world at the first
    step after that; other bodies enter at once. Water inside its mesh is then removed, and the log reports the number of particles. The

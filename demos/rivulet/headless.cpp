@@ -240,7 +240,6 @@ int runHeadless(const RunOptions& options) {
     if (!opened) return report(opened.error());
     if (opened->instead) device = std::move(opened->instead);
     const std::unique_ptr<Session> session = std::move(opened->session);
-    if (!options.render) session->drawNothing();
     if (!options.resume.empty())
         if (Status resumed = resumeFrom(options.resume, *session); !resumed) return report(resumed.error());
     if (Status replays = replayOf(options, *session); !replays) return report(replays.error());

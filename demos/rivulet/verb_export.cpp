@@ -232,7 +232,6 @@ int exportAs(const ExportRequest& request, const SceneFile& scene) {
     if (!opened) return report(opened.error());
     if (opened->instead) asked.device = std::move(opened->instead);
     const std::unique_ptr<Session> session = std::move(opened->session);
-    session->drawNothing();
 
     const Graceful graceful;
     asked.device->stopOn(graceful.flag());

@@ -69,31 +69,71 @@ Result<GpuMesh> GpuMesh::create(const Mesh& mesh) {
     return out;
 }
 
-Status GpuMesh::follow(const Deformer& deformer) {
-    bounds_ = deformer.bounds();
-    if (followed_ == deformer.version()) return ok();
-    Device& device = deformer.device();
-    GLuint names[2] = {static_cast<GLuint>(deformer.positions().handle()), static_cast<GLuint>(deformer.normals().handle())};
-    if (device.backend() != Backend::gl) {
-        copy_.resize(deformer.vertices());
-        const std::span<std::byte> bytes = std::as_writable_bytes(std::span(copy_));
-        const std::pair<const rivulet::Buffer*, gpu::Buffer*> all[] = {{&deformer.positions(), &positions_},
-                                                                       {&deformer.normals(), &normals_}};
-        for (const auto& [from, to] : all) {
-            if (to->bytes() != bytes.size()) {
-                Result<gpu::Buffer> made = gpu::Buffer::create(bytes.size());
-                if (!made) return made.error();
-                *to = std::move(*made);
-            }
-            device.read(*from, bytes);
-            to->write(bytes);
-        }
-        names[0] = positions_.name();
-        names[1] = normals_.name();
+void GpuMesh::attach(GLuint positions, GLuint normals) {
+    array_.attribute(0, positions, 3, GL_FLOAT, sizeof(vec4));
+    array_.attribute(1, normals, 4, GL_FLOAT, sizeof(vec4));
+}
+
+Status GpuMesh::makeRoom(size_t bytes) {
+    for (size_t k = 0; k < 2; ++k) {
+        if (copies_.buffers[k] && copies_.buffers[k].bytes() == bytes) continue;
+        copies_.seen[k].reset();
+        Result<gpu::Buffer> made = gpu::Buffer::create(bytes);
+        if (!made) return made.error();
+        copies_.buffers[k] = std::move(*made);
     }
-    array_.attribute(0, names[0], 3, GL_FLOAT, sizeof(vec4));
-    array_.attribute(1, names[1], 4, GL_FLOAT, sizeof(vec4));
+    return ok();
+}
+
+// Lets OpenCL copy the vertices into OpenGL's memory. Returns false where they do not share it.
+bool GpuMesh::share(const Deformer& deformer) {
+    const std::shared_ptr<const GlSharing> by = unshared_ ? nullptr : deformer.device().glShare().by;
+    if (!by) return false;
+    const Buffer* const from[] = {&deformer.positions(), &deformer.normals()};
+    std::vector<GlSharing::Copy> copies;
+    for (size_t k = 0; k < 2 && !unshared_; ++k) {
+        if (!copies_.seen[k]) {
+            Result<GlSharing::Wrapped> seen = by->wrap(copies_.buffers[k].name());
+            unshared_ = !seen;
+            if (seen) copies_.seen[k] = std::move(*seen);
+        }
+        copies.push_back({from[k], &copies_.seen[k], copies_.buffers[k].bytes()});
+    }
+    unshared_ = unshared_ || !by->copy(copies);
+    return !unshared_;
+}
+
+Status GpuMesh::follow(const Deformer& deformer) {
+    Device& device = deformer.device();
+    if (device.backend() == Backend::gl) {
+        bounds_ = deformer.bounds();
+        if (followed_ != deformer.version())
+            attach(static_cast<GLuint>(deformer.positions().handle()), static_cast<GLuint>(deformer.normals().handle()));
+        followed_ = deformer.version();
+        return ok();
+    }
+    if (followed_ == deformer.version()) return ok();
+    if (Status room = makeRoom(deformer.vertices() * sizeof(vec4)); !room) return room;
+    if (!share(deformer))
+        return follow(DeformedVertices{device.readAll<vec4>(deformer.positions(), deformer.vertices()),
+                                       device.readAll<vec4>(deformer.normals(), deformer.vertices()),
+                                       deformer.bounds(),
+                                       deformer.version(),
+                                       {}});
+    bounds_ = deformer.bounds();
+    attach(copies_.buffers[0].name(), copies_.buffers[1].name());
     followed_ = deformer.version();
+    return ok();
+}
+
+Status GpuMesh::follow(const DeformedVertices& v) {
+    if (followed_ == v.version || v.normals.empty()) return ok();
+    if (Status room = makeRoom(v.positions.size() * sizeof(vec4)); !room) return room;
+    copies_.buffers[0].writeAll(std::span<const vec4>(v.positions));
+    copies_.buffers[1].writeAll(std::span<const vec4>(v.normals));
+    bounds_ = v.bounds;
+    attach(copies_.buffers[0].name(), copies_.buffers[1].name());
+    followed_ = v.version;
     return ok();
 }
 

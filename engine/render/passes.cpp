@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <string>
+#include <tuple>
 
 #include "engine/render/skin_tables.h"
 
@@ -22,6 +24,7 @@ using gpu::Usage;
 constexpr int kShadowSize = 1024;     // texels, of the depth map
 constexpr int kShadowSharpReach = 2;  // texels either side
 constexpr int kShadowSoftReach = 9;   // of the soft map, a quarter as wide
+constexpr int kPoseUnit = 4;          // beyond the textures of plain meshes
 constexpr float kExposure = 0.55F;
 constexpr float kBoxWidth = 1.2F;                        // pixels
 const float kPoreTiles = std::round(0.36F / kPoreTile);  // a unit of uv: about 0.36 m where a head's chart fills the tile
@@ -59,9 +62,19 @@ void cull(const DrawnMesh& m) {
     glFrontFace(glm::determinant(mat3(m.toWorld)) < 0 ? GL_CW : GL_CCW);
 }
 
+// The transform of a plain mesh, for its vertex shader.
+void setTransform(Program& p, const DrawnMesh& m) {
+    if (m.pose) {
+        p.set("poseRows", kPoseUnit);
+        p.set("poseTexel", m.pose->texel);
+        glBindTextureUnit(kPoseUnit, m.pose->rows);
+    }
+    p.set("toWorldMatrix", m.pose ? m.pose->toBody : m.toWorld);
+}
+
 void setPlace(Program& p, const DrawnMesh& m) {
-    p.set("toWorldMatrix", m.toWorld);
-    p.set("normalMatrix", glm::transpose(glm::inverse(mat3(m.toWorld))));
+    setTransform(p, m);
+    p.set("normalMatrix", glm::transpose(glm::inverse(mat3(m.pose ? m.pose->toBody : m.toWorld))));
     p.set("baseColour", m.material.baseColour);
     p.set("roughness", m.material.roughness);
     p.set("metallic", m.material.metallic);
@@ -130,31 +143,55 @@ void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
 }  // namespace
 
 std::vector<Program*> RenderPrograms::all() {
-    std::vector<Program*> programs = {&shadow,     &shadowHoles, &shadowFirst,   &shadowHalve,  &shadowBlur, &depth,
-                                      &floorDepth, &occlusion,   &occlusionBlur, &sky,          &floor,      &mesh,
-                                      &meshWet,    &glass,       &box,           &boxOverWater, &tonemap,    &antialias};
+    std::vector<Program*> programs = {&shadowHoles, &shadowFirst, &shadowHalve, &shadowBlur, &floorDepth,   &occlusion, &occlusionBlur,
+                                      &sky,         &floor,       &glass,       &box,        &boxOverWater, &tonemap,   &antialias};
+    for (Plain* of : {&plain, posed ? &*posed : nullptr})
+        if (of != nullptr) programs.insert(programs.end(), {&of->shadow, &of->depth, &of->mesh, &of->meshWet});
     for (auto& [key, program] : parts_) programs.push_back(&program);
     return programs;
 }
 
+Result<RenderPrograms::Plain> RenderPrograms::makePlain(const ShaderFiles& files, std::vector<Define> defines) {
+    Plain p;
+    for (const auto& [into, vertex, fragment] : {std::tuple(&p.shadow, "render/mesh_depth.vert", "render/depth.frag"),
+                                                 {&p.depth, "material/mesh.vert", "render/depth.frag"},
+                                                 {&p.mesh, "material/mesh.vert", "material/mesh.frag"},
+                                                 {&p.meshWet, "material/mesh.vert", "material/mesh.frag"}}) {
+        if (into == &p.meshWet) defines.push_back({"WET", "1"});
+        Result<Program> made = Program::create(files, {std::string("shaders/") + vertex, std::string("shaders/") + fragment}, defines);
+        if (!made) return made.error();
+        *into = std::move(*made);
+    }
+    return p;
+}
+
+Status RenderPrograms::preparePosed() {
+    if (posed) return ok();
+    Result<Plain> made = makePlain(files_, {{"POSED", "1"}});
+    if (!made) return made.error();
+    posed = std::move(*made);
+    return ok();
+}
+
+RenderPrograms::Plain& RenderPrograms::of(const DrawnMesh& mesh) { return mesh.pose ? *posed : plain; }
+
 Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
     RenderPrograms p;
     p.files_ = files;
+    Result<Plain> plain = makePlain(files, {});
+    if (!plain) return plain.error();
+    p.plain = std::move(*plain);
     const std::string full = "shaders/render/fullscreen.vert", box = "shaders/render/box.vert", folder = "shaders/render/";
     std::pair<Program*, Result<Program>> made[] = {
-        {&p.shadow, Program::create(files, {folder + "mesh_depth.vert", folder + "depth.frag"})},
         {&p.shadowHoles, Program::create(files, {folder + "mesh_depth.vert", folder + "depth.frag"}, {{"HOLES", "1"}})},
         {&p.shadowFirst, Program::create(files, {full, folder + "shadow_blur.frag"}, {{"FROM_DEPTH", "1"}})},
         {&p.shadowHalve, Program::create(files, {full, folder + "shadow_blur.frag"}, {{"FROM_DEPTH", "1"}, {"HALVE", "1"}})},
         {&p.shadowBlur, Program::create(files, {full, folder + "shadow_blur.frag"})},
-        {&p.depth, Program::create(files, {"shaders/material/mesh.vert", folder + "depth.frag"})},
         {&p.floorDepth, Program::create(files, {full, folder + "background_depth.frag"})},
         {&p.occlusion, Program::create(files, {full, folder + "occlusion.frag"})},
         {&p.occlusionBlur, Program::create(files, {full, folder + "occlusion_blur.frag"})},
         {&p.sky, Program::create(files, {full, folder + "background.frag"})},
         {&p.floor, Program::create(files, {full, folder + "background.frag"}, {{"FLOOR", "1"}})},
-        {&p.mesh, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/mesh.frag"})},
-        {&p.meshWet, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/mesh.frag"}, {{"WET", "1"}})},
         {&p.glass, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/glass.frag"})},
         {&p.box, Program::create(files, {box, folder + "box.frag"})},
         {&p.boxOverWater, Program::create(files, {box, folder + "box.frag"}, {{"OVER_WATER", "1"}})},
@@ -210,9 +247,10 @@ void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMes
         for (const DrawnMesh& m : drawn) {
             if (m.material.blended) continue;
             const bool holes = !isSolid(m.material);
-            Program& program = holes ? programs.shadowHoles : programs.shadow;
+            Program& program = holes ? programs.shadowHoles : programs.of(m).shadow;
             program.use();
-            program.set("toClip", projection * m.toWorld);
+            program.set("toClip", m.pose ? projection : projection * m.toWorld);
+            if (m.pose) setTransform(program, m);
             if (holes) {
                 program.texture("colourMap", 0, *m.textures.colour);
                 program.set("opacity", m.material.opacity);
@@ -258,10 +296,11 @@ TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle
         programs.floorDepth.use();
         c.drawFullscreen();
         glDepthFunc(GL_LESS);
-        programs.depth.use();
         for (const DrawnMesh& m : drawn) {
             if (!isSolid(m.material)) continue;
-            programs.depth.set("toWorldMatrix", m.toWorld);
+            Program& program = programs.of(m).depth;
+            program.use();
+            setTransform(program, m);
             cull(m);
             m.mesh->draw();
         }
@@ -381,7 +420,7 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
         glDepthFunc(GL_LEQUAL);
         for (const DrawnMesh& m : drawn) {
             if (m.part != nullptr || m.material.clear) continue;
-            Program& p = m.wet ? programs.meshWet : programs.mesh;
+            Program& p = m.wet ? programs.of(m).meshWet : programs.of(m).mesh;
             bindPlain(p, c, occlusion, light);
             setPlace(p, m);
             setWet(p, m);
@@ -438,9 +477,9 @@ TextureHandle addGlassDepth(FrameGraph& graph, RenderPrograms& programs, BufferH
         c.drawTo({}, depth).clearDepth();
         bindFrame(c, frame);
         glEnable(GL_DEPTH_TEST);
-        programs.depth.use();
+        programs.plain.depth.use();
         for (const DrawnMesh& m : drawn) {
-            programs.depth.set("toWorldMatrix", m.toWorld);
+            setTransform(programs.plain.depth, m);
             m.mesh->draw();
         }
     });

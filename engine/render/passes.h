@@ -20,25 +20,44 @@
 
 namespace rivulet {
 
+struct DrawnMesh;
+
 // The shader programs of all passes.
 struct RenderPrograms {
-    gpu::Program shadow, shadowHoles, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh,
-        meshWet, glass, box, boxOverWater, tonemap, antialias;
+    // Of meshes with a plain material (see isPart).
+    struct Plain {
+        gpu::Program shadow, depth, mesh, meshWet;
+    };
+    Plain plain;
+    std::optional<Plain> posed;  // of those that move with a body on the device; empty until preparePosed()
+    gpu::Program shadowHoles, shadowFirst, shadowHalve, shadowBlur, floorDepth, occlusion, occlusionBlur, sky, floor, glass, box,
+        boxOverWater, tonemap, antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
-    std::vector<gpu::Program*> all();  // also those of part() created so far
+    Status preparePosed();             // Error: as create
+    std::vector<gpu::Program*> all();  // also those of part() and preparePosed() created so far
+    Plain& of(const DrawnMesh& mesh);
 
     // The program for meshes of this material, with or without a layer, with or without water between it and the light, and dry or wet
     // (see canBeWet). It is created on first use. Error: as create.
     Result<gpu::Program*> part(const Material& material, bool layered, bool water, bool wet = false);
 
   private:
+    static Result<Plain> makePlain(const ShaderFiles& files, std::vector<Define> defines);
     ShaderFiles files_;
     std::map<unsigned, gpu::Program> parts_;
 };
 
+// The pose of a body, where a kernel has written it: see shaders/material/posed.glsl.
+struct DevicePose {
+    unsigned rows = 0;  // GL name of a buffer texture
+    int texel = 0;      // the first of the body's row
+    mat4 toBody{1.0F};  // the mesh -> the body's frame
+};
+
 struct DrawnMesh {
-    const GpuMesh* mesh = nullptr;  // must exist until the graph has executed
-    mat4 toWorld{1.0F};
+    const GpuMesh* mesh = nullptr;   // must exist until the graph has executed
+    mat4 toWorld{1.0F};              // with `pose`: about
+    std::optional<DevicePose> pose;  // only with a plain material, after preparePosed(); `wet` is then of the body's frame
     Material material;
     gpu::Program* part = nullptr;  // RenderPrograms::part(), which also needs `textures`; null: the simple program (see isPart)
     MaterialTextures textures;
@@ -47,7 +66,8 @@ struct DrawnMesh {
     std::optional<WetGrid> wet;  // where it is wet, if addOpaque gets WetBuffers; `part` is then wet
 };
 
-// Whether a material needs the full program (textures, skin, eye, ...) instead of colour, roughness and metallic alone.
+// Whether a material needs the full program (textures, skin, eye, ...) instead of colour, roughness and metallic alone. Else it is plain,
+// unless it is clear.
 bool isPart(const Material& material);
 
 // Whether wetness changes the look of a material: not that of skin and eyes, which have layers, nor of what is seen through.

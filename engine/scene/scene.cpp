@@ -25,6 +25,28 @@ std::vector<bool> Scene::visible() const {
     return shown;
 }
 
+std::optional<size_t> Scene::bodyOf(size_t node) const {
+    for (auto n = static_cast<int>(node); n >= 0; n = nodes_[static_cast<size_t>(n)].parent)
+        if (nodes_[static_cast<size_t>(n)].body >= 0) return static_cast<size_t>(n);
+    return std::nullopt;
+}
+
+mat4 Scene::toBody(size_t node) const {
+    mat4 to(1.0F);
+    for (size_t n = node; nodes_[n].body < 0; n = static_cast<size_t>(nodes_[n].parent)) {
+        ASSERT(nodes_[n].parent >= 0, "ask for a node that moves with a body");
+        to = nodes_[n].local * to;
+    }
+    return to;
+}
+
+void Scene::moveBody(size_t node, const mat4& local) {
+    const mat4 back = nodes_[node].local * glm::inverse(local);
+    for (size_t n = node; n < nodes_.size(); ++n)
+        if (nodes_[n].wet && bodyOf(n) == node) nodes_[n].wet->fromWorld *= back;
+    nodes_[node].local = local;
+}
+
 Bounds Scene::bounds() const {
     Bounds all;
     std::vector<mat4> world = worldMatrices();

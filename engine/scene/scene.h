@@ -20,10 +20,14 @@ struct Node {
     int parent = -1;                   // index of an earlier node, or -1: the world
     std::shared_ptr<const Mesh> mesh;  // null: a group
     Material material;
-    bool visible = true;                       // if false, its children are hidden too
-    std::shared_ptr<const Deformer> deformer;  // deformed vertices; null: the mesh's. Must be destroyed before its device
-    std::shared_ptr<const Layer> layer;        // liquid on the material; null: none
-    std::optional<WetGrid> wet;                // where it is wet; empty: dry
+    bool visible = true;                               // if false, its children are hidden too
+    std::shared_ptr<const Deformer> deformer;          // deformed vertices; null: the mesh's. Must be destroyed before its device
+    std::shared_ptr<const DeformedVertices> deformed;  // deformed vertices of an earlier time; null: the deformer's
+    std::shared_ptr<const Layer> layer;                // liquid on the material; null: none
+    std::optional<WetGrid> wet;                        // where it is wet; empty: dry
+    // Not negative: the node is a body of this number, and its parent is the world. Where a device has moved bodies and their host does not
+    // know where to, `local` is where the body is expected, and a renderer may read its pose from the device.
+    int body = -1;
 };
 
 class Scene {
@@ -35,6 +39,11 @@ class Scene {
     // The transform of each node to the world, in the order of nodes().
     std::vector<mat4> worldMatrices() const;
     std::vector<bool> visible() const;
+    // The node of the body that `node` moves with: itself or one above it; empty: none. And the transform of `node` to it.
+    std::optional<size_t> bodyOf(size_t node) const;
+    mat4 toBody(size_t node) const;
+    // Moves the node of a body; what is wet of it and below it stays wet.
+    void moveBody(size_t node, const mat4& local);
     // The bounds of all visible meshes, m, world; empty if there are none.
     Bounds bounds() const;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <tuple>
 
@@ -172,6 +173,21 @@ size_t Deformer::bytes() const {
     size_t sum = 0;
     for (const Buffer* b : {&rest_, &begin_, &offset_, &amount_, &grip_, &bone_, &point_, &ring_, &corner_, &normal_}) sum += b->bytes();
     return sum;
+}
+
+std::shared_ptr<const DeformedVertices> readLater(const std::shared_ptr<const Deformer>& deformer) {
+    auto all = std::make_shared<DeformedVertices>();
+    all->bounds = deformer->bounds();
+    all->version = deformer->version();
+    all->of = deformer;
+    for (const auto& [from, to] :
+         {std::pair(&deformer->positions(), &DeformedVertices::positions), std::pair(&deformer->normals(), &DeformedVertices::normals)})
+        deformer->device().readLater(*from, deformer->vertices() * sizeof(vec4), [all, to](std::span<const std::byte> bytes) {
+            std::vector<vec4>& vertices = (*all).*to;
+            vertices.resize(bytes.size() / sizeof(vec4));
+            std::memcpy(vertices.data(), bytes.data(), bytes.size());
+        });
+    return all;
 }
 
 }  // namespace rivulet

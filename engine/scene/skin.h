@@ -13,6 +13,18 @@
 
 namespace rivulet {
 
+class Deformer;
+
+// The vertices of a Deformer at a time, in the host's memory. They may outlive it and its device.
+struct DeformedVertices {
+    std::vector<vec4> positions, normals;  // as the Deformer's buffers; empty: they have not arrived
+    Bounds bounds;                         // m; conservative
+    uint64_t version = 0;                  // the Deformer's
+    std::weak_ptr<const Deformer> of;
+};
+// Reads the vertices that a deformer has now, without waiting: they arrive within a later Device::poll(), on the cpu at once.
+std::shared_ptr<const DeformedVertices> readLater(const std::shared_ptr<const Deformer>& deformer);
+
 class Deformer {
   public:
     // `device` must outlive it and must have the kernels material/deform and material/normals. In rest pose until the first run().

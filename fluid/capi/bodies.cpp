@@ -300,19 +300,27 @@ Result<std::optional<size_t>> Bodies::placeOf(const FluidWorld& world, uint32_t 
     return std::optional<size_t>();
 }
 
+namespace {
+
+Status statesInto(const rivulet_world& world, const std::vector<BodyState>& bodies, rivulet_body_state* states, size_t count) {
+    if (states == nullptr) return badInput("states is NULL");
+    if (count != bodies.size()) return badInput(fmt::format("count is {}, and there are {} bodies", count, bodies.size()));
+    for (size_t k = 0; k < count; ++k) states[k] = world.bodies.stateOf(k, bodies[k]);
+    return ok();
+}
+
+}  // namespace
 }  // namespace rivulet::capi
 
 using namespace rivulet;
 using namespace rivulet::capi;
 
 rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why) {
-    return with(world, why, Needs::device, [&]() -> Status {
-        const std::vector<BodyState>& bodies = world->world->bodies();
-        if (states == nullptr) return badInput("states is NULL");
-        if (count != bodies.size()) return badInput(fmt::format("count is {}, and there are {} bodies", count, bodies.size()));
-        for (size_t k = 0; k < count; ++k) states[k] = world->bodies.stateOf(k, bodies[k]);
-        return ok();
-    });
+    return with(world, why, Needs::device, [&] { return statesInto(*world, world->world->bodies(), states, count); });
+}
+
+rivulet_status rivulet_world_expected_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&] { return statesInto(*world, world->world->expectedBodies(), states, count); });
 }
 
 rivulet_status rivulet_world_add_body(rivulet_world* world, const rivulet_body* body, uint32_t* id, rivulet_error* why) {

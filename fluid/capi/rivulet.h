@@ -48,6 +48,7 @@
 #include "rivulet_query.h"
 #include "rivulet_skin.h"
 #include "rivulet_snapshot.h"
+#include "rivulet_solids.h"
 #include "rivulet_world.h"
 
 #endif

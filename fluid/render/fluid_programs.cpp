@@ -6,6 +6,7 @@
 #include "engine/core/assert.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
+#include "shaders/fluid/solids/body_state.h"
 
 namespace rivulet {
 
@@ -121,6 +122,7 @@ Status FluidPrograms::fits(const FluidView& fluid) const {
     for (const Rows& rows : {Rows{fluid.count, 1, "particles", "a larger fluid.spacing or a smaller fluid.maxParticles"},
                              Rows{fluid.foamCount, 1, "flecks of foam", "a smaller fluid.foam.most"},
                              Rows{fluid.dropCount, 2, "drops in the air", "fewer drops on skins"},
+                             Rows{fluid.bodyCount, sizeof(DeviceBody) / sizeof(vec4), "bodies", "fewer of them"},
                              Rows{fluid.pendantCount, 5, "drops that hang", "fewer drops on skins"}})
         if (rows.count > mostTexels / rows.texelsEach)
             return failed(fmt::format("{} {} are more than the {} that this GPU can draw: ask for {}, or run without pictures", rows.count,

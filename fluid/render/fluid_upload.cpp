@@ -8,6 +8,7 @@
 
 #include "engine/core/readable_bytes.h"
 #include "engine/core/timeline.h"
+#include "shaders/fluid/solids/body_state.h"
 
 namespace rivulet {
 
@@ -56,7 +57,8 @@ Status FluidUpload::Target::makeRoom(size_t bytes) {
 
 template <class Self>
 auto FluidUpload::targets(Self& of) {
-    std::vector all = {&of.position_,      &of.velocity_,      &of.id_,           &of.absorption_, &of.foam_[0], &of.foam_[1], &of.wetness_,
+    std::vector all = {&of.position_,      &of.velocity_,      &of.id_,           &of.absorption_,
+                       &of.foam_[0],       &of.foam_[1],       &of.wetness_,      &of.bodies_,
                        &of.ellipsoids_[0], &of.ellipsoids_[1], &of.ellipsoids_[2]};
     for (auto& attribute : of.attributes_) all.push_back(&attribute);
     return all;
@@ -179,6 +181,14 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
             out.wetCells = wetCells_.name();
             arrays.push_back({wet.values, {}, &wetness_, &out.wetness, out.wetnessBytes, false});
         }
+    }
+    if (const BodyRows bodies = world.bodyRows(); bodies.rows != nullptr) {
+        if (bodies.current) out.bodiesMoved = particles.revision;
+        out.bodyCount = bodies.count;
+        if (same)
+            out.bodies = static_cast<unsigned>(bodies.rows->handle());
+        else if (sharing_ || bodies.current)
+            arrays.push_back({bodies.rows, {}, &bodies_, &out.bodies, bodies.count * sizeof(DeviceBody), false});
     }
     if (out.count > 0) {
         wanted(particles.drawn, position_, out.position, true);

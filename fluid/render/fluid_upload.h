@@ -84,7 +84,7 @@ class FluidUpload {
     Target position_, velocity_, id_, absorption_;
     std::array<Target, kMostAttributes> attributes_;
     std::array<Target, 2> foam_;
-    Target wetness_;
+    Target wetness_, bodies_;
     gpu::Buffer wetCells_;
     std::shared_ptr<const WetSurface> wetSurface_;  // the surface that wetCells_ was made from
     std::array<Target, 3> ellipsoids_;

@@ -52,6 +52,11 @@ struct FluidView {
     // Drops that hang or have just let go: GL buffer name, five vec4 per drop, as shaders/screen_space/pendant.glsl has them, in the world.
     unsigned pendants = 0;
     uint32_t pendantCount = 0;
+    // Bodies that a GPU moves: GL buffer name, rows of DeviceBody (shaders/fluid/solids/body_state.h) in the order of FluidWorld::bodyIds.
+    // They are valid where `bodiesMoved` is not null, and the same while it is the same object; else the host knows where the bodies are.
+    unsigned bodies = 0;
+    uint32_t bodyCount = 0;
+    std::shared_ptr<const void> bodiesMoved = {};
     Bounds bounds;  // m, world: the box of the water, which is cut there and casts a shadow from there; empty: no cut, no shadow
 };
 

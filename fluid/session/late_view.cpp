@@ -1,7 +1,10 @@
 #include "fluid/session/late_view.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "fluid/scene/collider_motion.h"
 #include "fluid/session/session.h"
 
 namespace rivulet {
@@ -18,6 +21,29 @@ void LateView::dropOlder() {
     }
 }
 
+// To where they were: their states have arrived before the particles.
+void LateView::moveBodies(Frame& frame, const FluidWorld& world) {
+    if (!std::exchange(frame.moved, false)) return;
+    const std::optional<std::vector<BodyState>> states = world.bodiesAt(frame.time);
+    if (!states) return;
+    for (size_t n = 0; n < frame.solids.nodes().size(); ++n)
+        if (const int body = frame.solids.nodes()[n].body; body >= 0)
+            frame.solids.moveBody(n, matrixOf((*states)[static_cast<size_t>(body)].pose));
+}
+
+void LateView::readMeshes(Scene& solids) {
+    std::vector<std::shared_ptr<const DeformedVertices>> read;
+    for (Node& node : solids.nodes()) {
+        if (!node.deformer) continue;
+        const auto isOfNode = [&](const auto& vertices) { return vertices->of.lock() == node.deformer; };
+        const auto before = std::ranges::find_if(meshes_, isOfNode);
+        node.deformed = before != meshes_.end() && (*before)->version == node.deformer->version() ? *before : readLater(node.deformer);
+        node.deformer = nullptr;
+        read.push_back(node.deformed);
+    }
+    meshes_ = std::move(read);
+}
+
 Result<LateView::Shown> LateView::show(FluidUpload& upload, const Session& session) {
     constexpr size_t kOnTheirWay = 3;
     Device& device = session.world().device();
@@ -27,6 +53,8 @@ Result<LateView::Shown> LateView::show(FluidUpload& upload, const Session& sessi
     Frame& frame = frames_.emplace_back(std::move(spare_));
     frame.solids = session.solids();
     frame.time = now;
+    frame.moved = session.world().bodyRows().current;
+    readMeshes(frame.solids);
     if (Status asked = frame.snapshot.takeLater(session.world(), session.flows().airDrops(), session.flows().pendants()); !asked) {
         frames_.pop_back();
         return asked.error();
@@ -39,6 +67,7 @@ Result<LateView::Shown> LateView::show(FluidUpload& upload, const Session& sessi
         dropOlder();
     }
     if (!frames_.front().snapshot.arrived()) return failed("the device does not answer any more");
+    moveBodies(frames_.front(), session.world());
     Result<FluidView> fluid = upload.view(frames_.front().snapshot, session.scene().look);
     if (!fluid) return fluid.error();
     return Shown{*fluid, &frames_.front().solids, frames_.front().time};

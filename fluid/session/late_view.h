@@ -1,10 +1,11 @@
 // LateView: what a window shows of a session whose data reach OpenGL through the host's memory (backend cl without shared memory): the
-// newest state that has arrived, one to three frames old, so that no frame waits. Particles, spray, drops and the places of solids are of
-// one time; floating bodies that the GPU moves are where they were expected at that time (FluidWorld::expectedBodies): within 0.5 s of a
-// blow that waits for their states, here as on backend gl. Headless runs and recordings show the state of the frame itself: viewOf().
+// newest state that has arrived, one to three frames old, so that no frame waits. Particles, spray, drops and solids are of one time, also
+// bodies that the GPU moves and meshes that deform. Headless runs and recordings show the state of the frame itself: viewOf().
 #pragma once
 
 #include <deque>
+#include <memory>
+#include <vector>
 
 #include "engine/scene/scene.h"
 #include "fluid/render/fluid_snapshot.h"
@@ -31,11 +32,17 @@ class LateView {
         FluidSnapshot snapshot;
         Scene solids;
         double time = 0;
+        bool moved = false;  // the device has moved the bodies of this frame: `solids` has them where they were expected
     };
     void dropOlder();
+    void moveBodies(Frame& frame, const FluidWorld& world);
+    void readMeshes(Scene& solids);
 
     std::deque<Frame> frames_;  // in the order of time
     Frame spare_;               // a frame that was shown: its memory is reused
+    // The vertices that were read last of each deformer of the last frame. Neither they nor frames keep a deformer, since a device may be
+    // gone before this is.
+    std::vector<std::shared_ptr<const DeformedVertices>> meshes_;
     const Device* device_ = nullptr;
 };
 

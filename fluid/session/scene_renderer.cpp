@@ -11,11 +11,13 @@
 #include "engine/scene/light.h"
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
+#include "shaders/fluid/solids/body_state.h"
 
 namespace rivulet {
 namespace {
 
 constexpr float kOcclusionReach = 0.16F;  // of the shown scene's radius
+constexpr auto kPoseTexels = static_cast<int>(sizeof(DeviceBody) / sizeof(vec4));
 
 void copyTexels(const gpu::Texture& from, const gpu::Texture& to, int left) {
     glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, left, 0, 0, to.name(), GL_TEXTURE_2D, 0, left, 0, 0, from.width() - left,
@@ -145,7 +147,7 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
     std::set<const Image*> seen;
     for (const Node& node : scene.nodes()) {
         if (!node.mesh) continue;
-        const MeshKey key{node.mesh, node.deformer};
+        const MeshKey key = keyOf(node);
         used.insert(key);
         seen.merge(imagesOf(node.material));
         if (!meshes_.contains(key)) {
@@ -153,8 +155,11 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
             if (!mesh) return mesh.error();
             meshes_.emplace(key, std::move(*mesh));
         }
+        GpuMesh& mesh = meshes_.at(key);
+        if (node.deformed)
+            if (Status followed = mesh.follow(*node.deformed); !followed) return followed;
         if (node.deformer)
-            if (Status followed = meshes_.at(key).follow(*node.deformer); !followed) return followed;
+            if (Status followed = mesh.follow(*node.deformer); !followed) return followed;
     }
     std::erase_if(meshes_, [&](const auto& item) { return !used.contains(item.first); });
     images_.keepOnly(seen);
@@ -166,17 +171,38 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
     return ok();
 }
 
-Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld, bool water, bool wets) {
+// Meshes of bodies on the device are drawn where it has them.
+Status SceneRenderer::readPoses(const FluidView& fluid, const Scene& scene) {
+    const auto isBody = [](const Node& node) { return node.body >= 0; };
+    if (fluid.bodies == 0 || std::ranges::none_of(scene.nodes(), isBody)) return ok();
+    if (!poseRows_) {
+        GLuint name = 0;
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
+        poseRows_ = gpu::TextureName(name);
+    }
+    glTextureBuffer(poseRows_.name(), GL_RGBA32F, fluid.bodies);
+    return render_.preparePosed();
+}
+
+Result<DrawnMesh> SceneRenderer::drawnOf(const Scene& scene, size_t at, const mat4& toWorld, const FluidView& fluid) {
+    const Node& node = scene.nodes()[at];
     DrawnMesh drawn;
-    drawn.mesh = &meshes_.at(MeshKey{node.mesh, node.deformer});
+    drawn.mesh = &meshes_.at(keyOf(node));
     drawn.toWorld = toWorld;
     drawn.material = node.material;
     if (node.layer && node.layer->texels != nullptr && *node.layer->texels) drawn.layer = node.layer.get();
-    if (wets && canBeWet(node.material)) drawn.wet = node.wet;
-    if (!isPart(node.material) && drawn.layer == nullptr) return drawn;
+    if (fluid.wetness != 0 && canBeWet(node.material)) drawn.wet = node.wet;
+    if (!isPart(node.material) && drawn.layer == nullptr) {
+        const std::optional<size_t> body = fluid.bodiesMoved && !node.material.clear ? scene.bodyOf(at) : std::nullopt;
+        if (!body) return drawn;
+        const Node& moved = scene.nodes()[*body];
+        drawn.pose = DevicePose{poseRows_.name(), moved.body * kPoseTexels, scene.toBody(at)};
+        if (drawn.wet) drawn.wet->fromWorld *= moved.local;
+        return drawn;
+    }
     for (const bool wet : {false, true}) {
         if (wet && drawn.layer == nullptr) continue;
-        Result<gpu::Program*> part = render_.part(node.material, wet, water, !wet && drawn.wet);
+        Result<gpu::Program*> part = render_.part(node.material, wet, fluid.count > 0 && !fluid.bounds.empty(), !wet && drawn.wet);
         if (!part) return part.error();
         (wet ? drawn.wetPart : drawn.part) = *part;
     }
@@ -188,12 +214,12 @@ Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld, 
 
 // The maps are drawn again only after the light or a mesh has moved.
 void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
-                               LightMaps& light) {
+                               const FluidView& fluid, LightMaps& light) {
     std::vector<uint64_t> versions;
     bool deforms = false;
     for (const Node& node : scene.nodes()) {
-        versions.push_back(node.deformer ? node.deformer->version() : 0);
-        deforms = deforms || node.deformer;
+        versions.push_back(node.deformed ? node.deformed->version : node.deformer ? node.deformer->version() : 0);
+        deforms = deforms || node.deformer || node.deformed;
     }
     light.sharp = graph.importTexture("shadow, sharp", shadowSharp_[deforms ? 1 : 0]);
     light.soft = graph.importTexture("shadow, soft", shadowSoft_[deforms ? 1 : 0]);
@@ -203,7 +229,9 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
         places.push_back(m.toWorld);
         drawn.push_back(m.mesh);
     }
-    if (places == shadowOf_ && drawn == shadowMeshes_ && versions == shadowVersions_) return;
+    std::shared_ptr<const void> poses;
+    if (std::ranges::any_of(meshes, [](const DrawnMesh& m) { return m.pose.has_value(); })) poses = fluid.bodiesMoved;
+    if (places == shadowOf_ && drawn == shadowMeshes_ && versions == shadowVersions_ && poses == shadowPoses_) return;
     addShadow(graph, render_, meshes, projection, light.sharp, light.soft, deforms);
     shadowVersion_ = (shadowVersion_ + 1) % 16777216;  // a float can hold it
     graph.output(light.sharp);
@@ -211,6 +239,7 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
     shadowOf_ = std::move(places);
     shadowMeshes_ = std::move(drawn);
     shadowVersions_ = std::move(versions);
+    shadowPoses_ = std::move(poses);
 }
 
 Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings) {
@@ -223,6 +252,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (settings.look.quality == "auto") look->fast = hurries_;
     if (Status s = fluid_.fits(fluid); !s) return s;
     if (Status s = prepare(view, scene); !s) return s;
+    if (Status s = readPoses(fluid, scene); !s) return s;
 
     std::vector<DrawnMesh> meshes;
     const std::vector<mat4> world = scene.worldMatrices();
@@ -232,7 +262,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     for (size_t i = 0; i < scene.nodes().size(); ++i) {
         const Node& node = scene.nodes()[i];
         if (!visible[i] || !node.mesh) continue;
-        Result<DrawnMesh> drawn = drawnOf(node, world[i], !water.empty(), fluid.wetness != 0);
+        Result<DrawnMesh> drawn = drawnOf(scene, i, world[i], fluid);
         if (!drawn) return drawn.error();
         const Bounds b = transformBounds(world[i], drawn->mesh->bounds());
         meshes.push_back(std::move(*drawn));
@@ -261,7 +291,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());
     const gpu::TextureHandle nothing = graph.importTexture("nothing", nothing_);
     LightMaps light{nothing, nothing, nothing, look->absorption + look->scattering};
-    if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, scene, light);
+    if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, scene, fluid, light);
     FluidDraw draw;
     draw.view = view;
     draw.fluid = fluid;

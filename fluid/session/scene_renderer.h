@@ -69,9 +69,10 @@ class SceneRenderer {
   private:
     SceneRenderer() = default;
     Status prepare(const FrameView& view, const Scene& scene);
-    Result<DrawnMesh> drawnOf(const Node& node, const mat4& toWorld, bool water, bool wets);
+    Result<DrawnMesh> drawnOf(const Scene& scene, size_t node, const mat4& toWorld, const FluidView& fluid);
+    Status readPoses(const FluidView& fluid, const Scene& scene);
     void addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
-                    LightMaps& light);
+                    const FluidView& fluid, LightMaps& light);
 
     RenderPrograms render_;
     LensPrograms lens_;
@@ -82,9 +83,11 @@ class SceneRenderer {
     std::array<gpu::Texture, 2> shadowSharp_, shadowSoft_;  // and those of fast quality
     std::vector<mat4> shadowOf_;  // the content of the shadow maps: the light's projection, then a matrix per mesh
     std::vector<const GpuMesh*> shadowMeshes_;
-    gpu::Texture nothing_;                  // bound where the scene has no light map
-    std::vector<uint64_t> shadowVersions_;  // of their deformers
+    gpu::Texture nothing_;                     // bound where the scene has no light map
+    std::vector<uint64_t> shadowVersions_;     // of their deformers
+    std::shared_ptr<const void> shadowPoses_;  // FluidView::bodiesMoved
     uint32_t shadowVersion_ = 0;
+    gpu::TextureName poseRows_;  // FluidView::bodies as a texture
     struct MeshKey {
         std::shared_ptr<const Mesh> mesh;
         std::weak_ptr<const Deformer> deformer;  // weak: a deformer must not outlive its device, but this may
@@ -92,6 +95,9 @@ class SceneRenderer {
             return mesh != other.mesh ? mesh < other.mesh : deformer.owner_before(other.deformer);
         }
     };
+    static MeshKey keyOf(const Node& node) {
+        return {node.mesh, node.deformed ? node.deformed->of : std::weak_ptr<const Deformer>(node.deformer)};
+    }
     std::map<MeshKey, GpuMesh> meshes_;
     GpuImages images_;
     std::function<bool(double)> progress_ = [](double) { return true; };

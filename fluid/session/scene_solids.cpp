@@ -113,10 +113,10 @@ void SceneSolids::placeModels(const SceneFile& scene, double time) {
         if (model.plays() && !model.rigid()) model.place(time, nodes_);
 }
 
-void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world, bool bodies) {
+void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world) {
     const std::vector<Pose> poses = world.drawnPoses();
     for (size_t k = 0; k < rigid_.size(); ++k) nodeOf(rigid_[k].model).local = matrixOf(poses[k]);
-    if (bodies && !bodyNodes_.empty()) {
+    if (!bodyNodes_.empty()) {
         const std::vector<BodyState>& states = world.expectedBodies();
         for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(states[k].pose);
     }

@@ -87,8 +87,8 @@ class SceneSolids {
     // Angles of colliders with the same number and file. `before`, `scene`: of `other` and of this.
     void setTurned(const SceneFile& scene, const SceneSolids& other, const SceneFile& before);
 
-    // Nodes go where `world` has its solids; those of bodies only with `bodies`, since it may wait for them.
-    void placeNodes(const SceneFile& scene, const FluidWorld& world, bool bodies = true);
+    // Nodes go where `world` has its solids, those of bodies where it expects them.
+    void placeNodes(const SceneFile& scene, const FluidWorld& world);
     // Or where a recorded frame has them: those places, and how many a frame must have.
     // `bodies`: their states; empty: as the nodes show them, which on a GPU may be expected ones.
     void placesInto(RecordedFrame& frame, std::span<const BodyState> bodies) const;

@@ -218,6 +218,7 @@ size_t SceneSolids::addBodyNodes(const BodyParams& params, const Pose& pose, Mes
     node.material.roughness = params.roughness;
     node.material.porosity = params.porosity;
     node.visible = params.visible;
+    node.body = static_cast<int>(bodyNodes_.size());
     const int main = nodes_.add(std::move(node));
     for (size_t p = 0; p < parts.size(); ++p) {
         Node part;

@@ -142,7 +142,7 @@ double Session::settle() {
         return worked_.ms + 1000 * (hostSeconds() - start);
     }
     if (interrupted_) return worked_.ms;
-    if (anyMoves() || (draws_ && solids_.hasBodies())) solids_.placeNodes(scene_, *world_, draws_);
+    if (anyMoves() || solids_.hasBodies()) solids_.placeNodes(scene_, *world_);
     worked_.ms += 1000 * (hostSeconds() - start);
     world_->device().poll();
     if (budget_) watchBudget(worked_.costMs, worked_.seconds);

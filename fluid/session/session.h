@@ -68,8 +68,6 @@ class Session {
     Bounds boundsOf(const Thing& thing) const { return solids_.boundsOf(scene_, thing); }
     // Pulls at a body (solids_bullet.h). Nothing: ends.
     void hold(const std::optional<BulletSolids::Hold>& hand) { solids_.hold(hand); }
-    // solids() will not be drawn: from now on steps do not place the nodes of bodies. Placing them can wait for a GPU.
-    void drawNothing() { draws_ = false; }
     // FluidInputs::mostMs of the next steps.
     void limitFrames(double ms) { mostMs_ = ms; }
     // From the next step on the jet of scene().pour falls on that point (m, world); nothing: it stops. No effect where pour.litres is 0 or
@@ -133,7 +131,6 @@ class Session {
     SnapshotKeeper snapshots_;
     double mostMs_ = 0;  // FluidInputs::mostMs
     bool interrupted_ = false;
-    bool draws_ = true;
 };
 
 }  // namespace rivulet

@@ -55,7 +55,6 @@ Result<Seen> watch(const EnvelopeSettings& settings, const StabilityRun& run) {
     Result<std::unique_ptr<Session>> made = Session::create(std::move(*scene), *settings.device, settings.log);
     if (!made) return made.error();
     Session& session = **made;
-    session.drawNothing();
     if (run.prepare)
         if (Status ready = run.prepare(session); !ready) return ready.error();
     Seen seen;

@@ -23,7 +23,6 @@ Result<Trial> Trial::open(const char* name, const CaseSettings& settings) {
     if (!session) return session.error();
     Trial trial;
     trial.session_ = std::move(*session);
-    trial.session_->drawNothing();
     trial.goOn_ = settings.goOn;
     return trial;
 }

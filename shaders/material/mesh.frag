@@ -5,6 +5,9 @@
 #include "shaders/material/surface.glsl"
 #include "shaders/material/noise.glsl"
 #if defined(WET)
+#if defined(POSED)
+#include "shaders/material/posed.glsl"
+#endif
 #include "shaders/material/wet.glsl"
 #endif
 in vec3 posWorld;

@@ -1,5 +1,8 @@
-// A mesh's vertices in world space. PART: also the outputs for textures and skin.
+// A mesh's vertices in world space. PART: also the outputs for textures and skin. POSED: it moves with a body on the device.
 #include "shaders/render/frame.glsl"
+#if defined(POSED)
+#include "shaders/material/posed.glsl"
+#endif
 layout(location = 0) in vec3 position;
 #if defined(PART)
 layout(location = 1) in vec4 normal;  // w: mean curvature, 1 / the mesh's unit
@@ -15,14 +18,20 @@ out float curvature;  // 1/m
 layout(location = 1) in vec3 normal;
 out vec3 posOwn;  // in the frame of the mesh
 #endif
-uniform mat4 toWorldMatrix;
+uniform mat4 toWorldMatrix;  // POSED: to the body's frame, as normalMatrix
 uniform mat3 normalMatrix;
 out vec3 posWorld;
 out vec3 normalWorld;
 invariant gl_Position;  // the depth pass draws the same vertices with another program, and what is drawn later must have its depth to the bit
 void main() {
+#if defined(POSED)
+    mat4 pose = poseMatrix();
+    posWorld = (pose * (toWorldMatrix * vec4(position, 1.0))).xyz;
+    normalWorld = mat3(pose) * (normalMatrix * normal.xyz);
+#else
     posWorld = (toWorldMatrix * vec4(position, 1.0)).xyz;
     normalWorld = normalMatrix * normal.xyz;
+#endif
 #if defined(PART)
     posUv = uv.xy;
     curvature = normal.w / scale;

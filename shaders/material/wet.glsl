@@ -1,10 +1,10 @@
 // A surface that water has touched: darker where it is porous (see darkened()), and glossy while a film of water is on it.
-// Needs surface.glsl and noise.glsl. A host's own material may include it: docs/embedding.md.
+// Needs surface.glsl and noise.glsl, POSED also posed.glsl. A host's own material may include it: docs/embedding.md.
 layout(std430, binding = 0) readonly buffer WetCells { int wetCells[]; };
 layout(std430, binding = 1) readonly buffer Wetness { float wetness[]; };
 #include "shaders/common/lang.h"
 #include "shaders/fluid/solids/wet_cells.h"
-uniform mat4 wetFromWorld;  // world (m) -> cells
+uniform mat4 wetFromWorld;  // world (m) -> cells; POSED: the body's frame -> cells
 uniform ivec3 wetSize;      // cells
 uniform uint wetFirstCell;
 uniform float porosity;     // 0: not darker when wet, 1: as sand; negative: of the roughness
@@ -17,7 +17,14 @@ struct Wet {
 
 // `rough`: the normal with all relief; `smooth_`: that of the mesh.
 Wet wetnessAt(vec3 posWorld, vec3 rough, vec3 smooth_, float roughness, float metallic) {
-    vec3 at = (wetFromWorld * vec4(posWorld, 1.0)).xyz;
+#if defined(POSED)
+    mat4 pose = poseMatrix();
+    mat3 back = transpose(mat3(pose));
+    mat4 fromWorld = wetFromWorld * mat4(vec4(back[0], 0.0), vec4(back[1], 0.0), vec4(back[2], 0.0), vec4(-(back * pose[3].xyz), 1.0));
+#else
+    mat4 fromWorld = wetFromWorld;
+#endif
+    vec3 at = (fromWorld * vec4(posWorld, 1.0)).xyz;
     float w = wetAt(at, wetSize.x, wetSize.y, wetSize.z, wetFirstCell);
     // Edges follow spots of the material instead of the cells, and a surface dries in patches.
     vec4 wide = noise(at * 0.31), fine = noise(at * 0.83 + 17.0);
@@ -26,8 +33,8 @@ Wet wetnessAt(vec3 posWorld, vec3 rough, vec3 smooth_, float roughness, float me
     q.damp = smoothstep(0.02, 0.85, w) * (porosity < 0.0 ? (1.0 - metallic) * smoothstep(0.25, 0.6, roughness) : porosity);
     q.film = smoothstep(0.4, 0.95, w);
     // The film levels the relief, and is thicker here and there.
-    vec3 bumps = transpose(mat3(wetFromWorld)) * (0.31 * wide.yzw + 0.2 * fine.yzw);
-    bumps /= max(length(wetFromWorld[0].xyz), 1.0e-6);
+    vec3 bumps = transpose(mat3(fromWorld)) * (0.31 * wide.yzw + 0.2 * fine.yzw);
+    bumps /= max(length(fromWorld[0].xyz), 1.0e-6);
     vec3 level = normalize(mix(rough, smooth_, 0.6));
     q.normal = normalize(level - 0.22 * (bumps - dot(bumps, level) * level));
     return q;

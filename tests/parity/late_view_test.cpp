@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
+#include <string>
 #include <tuple>
 
 #include "engine/gpu/buffer.h"
+#include "fluid/scene/collider_motion.h"
 #include "fluid/session/session.h"
+#include "shaders/fluid/solids/body_state.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/gpu_context.h"
 
@@ -69,6 +73,79 @@ TEST_F(LateViewTest, ParticlesAndSolidsAreOfOneTime) {
         EXPECT_EQ(sorted(drawn), was.particles) << k;
     }
     EXPECT_GT(behind, 0U);  // else this tested nothing
+}
+
+// What is shown of a session on cl that is never waited for but in frames whose state is compared: `compare(shown, exact)`.
+template <class State>
+void showLate(const SceneFile& scene, size_t frames, State (*exactOf)(const Session&),
+              void (*compare)(const LateView::Shown& shown, const State& exact)) {
+    Result<TestGpu> cl = makeTestGpu("cl");
+    if (!cl) GTEST_SKIP() << cl.error().message;
+    const auto session = Session::create(scene, *cl->device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    std::map<double, State> past;
+    FluidUpload upload;
+    LateView late;
+    size_t compared = 0, behind = 0;
+    for (size_t k = 0; k < frames; ++k) {
+        (*session)->step(1.0 / 60, false);
+        if (k % 3 == 0) past[(*session)->time()] = exactOf(**session);
+        const auto shown = late.show(upload, **session);
+        ASSERT_TRUE(shown) << shown.error().message;
+        behind += shown->time < (*session)->time() ? 1 : 0;
+        if (!past.contains(shown->time)) continue;
+        ++compared;
+        compare(*shown, past[shown->time]);
+    }
+    EXPECT_GT(behind, 0U);
+    EXPECT_GT(compared, 2U);
+}
+
+// A ball falls 0.5 m into a pool: it is drawn where the device had it, whatever the host expected.
+TEST_F(LateViewTest, BodiesAreWhereTheyWereAtThatTime) {
+    const std::string path = testing::TempDir() + "late_view_ball.json";
+    std::ofstream(path) << R"({"name": "ball", "doc": "", "fluid": {"method": "pbf", "spacing": 0.08,
+        "box": {"max": [1.6, 2, 1.6]}, "blocks": [{"max": [1.6, 0.64, 1.6]}]},
+        "bodies": [{"shape": "sphere", "radius": 0.12, "density": 400, "position": [0.8, 1.26, 0.8], "spin": [90, 0, 0]}]})";
+    const Result<SceneFile> scene = loadScene(path, {});
+    ASSERT_TRUE(scene) << scene.error().message;
+    showLate<mat4>(
+        *scene, 27,
+        [](const Session& session) {
+            const BodyRows rows = session.world().bodyRows();
+            EXPECT_TRUE(rows.current);
+            const DeviceBody body = session.world().device().readAll<DeviceBody>(*rows.rows, 1)[0];
+            const vec4& q = body.rotation;
+            return matrixOf({vec3(body.position), quat(q.w, q.x, q.y, q.z)});
+        },
+        [](const LateView::Shown& shown, const mat4& exact) {
+            for (const Node& node : shown.solids->nodes())
+                if (node.body == 0) EXPECT_EQ(node.local, exact) << shown.time;
+        });
+}
+
+// A head that speaks: its vertices are those of the time that is shown.
+TEST_F(LateViewTest, MeshesHaveTheShapeOfThatTime) {
+    const Result<SceneFile> scene =
+        loadScene(RIVULET_SOURCE_DIR "/assets/scenes/crying.json", std::vector<std::string>{"flow.0.mapSize=256"});
+    ASSERT_TRUE(scene) << scene.error().message;
+    using Shapes = std::vector<std::vector<vec4>>;
+    showLate<Shapes>(
+        *scene, 12,
+        [](const Session& session) {
+            Shapes all;
+            for (const Node& node : session.solids().nodes())
+                if (node.deformer)
+                    all.push_back(node.deformer->device().readAll<vec4>(node.deformer->positions(), node.deformer->vertices()));
+            EXPECT_FALSE(all.empty());
+            return all;
+        },
+        [](const LateView::Shown& shown, const Shapes& exact) {
+            size_t at = 0;
+            for (const Node& node : shown.solids->nodes())
+                if (node.deformed) EXPECT_EQ(node.deformed->positions, exact.at(at++)) << shown.time;
+            EXPECT_EQ(at, exact.size());
+        });
 }
 
 }  // namespace

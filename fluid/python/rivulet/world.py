@@ -271,6 +271,12 @@ class World(Queries):
         self._call("world_bodies", address_of(states), len(states))
         return states
 
+    def expected_bodies(self) -> Array:
+        """As bodies(), without waiting for a GPU that moves them: continued from their states two or three frames earlier."""
+        states = np.zeros(len(self.body_ids()), c.STATE)
+        self._call("world_expected_bodies", address_of(states), len(states))
+        return states
+
     def body_ids(self) -> Array:
         """(n,) uint32: the ids of the bodies in the world; those given at the start have their index."""
         count = c_size_t()

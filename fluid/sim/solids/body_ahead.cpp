@@ -13,20 +13,7 @@ BodyState stateOf(const DeviceBody& d) {
     return {{vec3(d.position), quat(d.rotation.w, d.rotation.x, d.rotation.y, d.rotation.z)}, vec3(d.velocity), vec3(d.spin)};
 }
 
-// Of a spacing, how far off a body is shown at most, but for the first frames after a blow; s, how long its states are then waited for.
-constexpr float kShown = 0.1F;
-constexpr double kRestless = 0.5;
-constexpr double kLatest = 3;  // frames until states arrive
-
 }  // namespace
-
-void BodyPasses::Late::compare(std::span<const BodyState> expected, std::span<const BodyState> states, double time, float scale) {
-    for (size_t k = 0; k < states.size(); ++k) {
-        const Pose &a = expected[k].pose, &b = states[k].pose;
-        const float chord = std::min(glm::length(a.rotation - b.rotation), glm::length(a.rotation + b.rotation));  // half the angle
-        if (!(scale * (glm::length(a.position - b.position) + 2 * chord * reach[k]) <= most)) restlessUntil = time + kRestless;
-    }
-}
 
 void BodyPasses::writeStates() {
     for (size_t k = 0; k < states_.size(); ++k) {
@@ -78,21 +65,18 @@ void BodyPasses::settle() {
     ++waits_;
     const std::vector<DeviceBody> rows = device_->readAll<DeviceBody>(deviceBodies_, bodies_.size());
     if (device_->health().state == DeviceHealth::lost) return;  // the rows are zeros
-    const std::vector<BodyState> expected = states_;
     take(rows);
-    // From less far back than a late state, it is expected better: the error grows with the square of the time.
-    const double back = time_ - late_->forecast.time();
-    const double scale = back > 0 ? std::max(kLatest * frameTime_ / back, 1.0) : 0.0;
-    late_->compare(expected, states_, time_, static_cast<float>(scale * scale));
     for (size_t k = 0; k < rows.size(); ++k) late_->faults[k] |= rows[k].faults;
     late_->forecast.arrived(states_, time_);
     settled_ = true;
 }
 
-const std::vector<BodyState>& BodyPasses::shown() {
-    if (isAhead() && time_ < late_->restlessUntil) settle();
-    return states_;
+BodyRows BodyPasses::rows() const {
+    if (!mayBeAhead_ || !any() || sampleCount_ == 0) return {};
+    return {&deviceBodies_, static_cast<uint32_t>(bodies_.size()), ahead_};
 }
+
+std::optional<std::vector<BodyState>> BodyPasses::statesAt(double time) const { return late_ ? late_->states.at(time) : std::nullopt; }
 
 void BodyPasses::settleNear(const vec3& p, float spacing) {
     for (size_t k = 0; k < bodies_.size() && isAhead(); ++k)
@@ -102,11 +86,10 @@ void BodyPasses::settleNear(const vec3& p, float spacing) {
 void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
     if (!mayBeAhead_ || !any() || sampleCount_ == 0) return;
     if (!late_) {
-        late_ = std::make_shared<Late>(Late{BodyForecast(bodies_), std::vector<uint32_t>(bodies_.size()), kShown * spacing_, reach_});
+        late_ = std::make_shared<Late>(Late{BodyForecast(bodies_), std::vector<uint32_t>(bodies_.size()), {}});
         pushed_.assign(bodies_.size(), dvec3(0.0));
         pushedFrom_ = time_;
     }
-    frameTime_ = seconds;
     std::vector<vec4> balls;
     const auto areFree = [&] {
         balls = late_->forecast.balls(time_, time_ + seconds, glm::length(gravity));
@@ -141,10 +124,13 @@ void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
     ahead_ = free;
 }
 
-void BodyPasses::endFrame() {
-    if (!ahead_) return;
+void BodyPasses::endFrame(double time) {
+    if (!ahead_) {
+        if (late_) late_->states.keep(time, states_);
+        return;
+    }
     device_->readLater(deviceBodies_, bodies_.size() * sizeof(DeviceBody),
-                       [weak = std::weak_ptr(late_), time = time_, expected = states_](std::span<const std::byte> bytes) {
+                       [weak = std::weak_ptr(late_), moved = time_, time](std::span<const std::byte> bytes) {
                            const std::shared_ptr<Late> late = weak.lock();
                            if (!late) return;  // the bodies have changed meanwhile
                            std::vector<DeviceBody> rows(bytes.size() / sizeof(DeviceBody));
@@ -152,8 +138,8 @@ void BodyPasses::endFrame() {
                            std::vector<BodyState> states;
                            states.reserve(rows.size());
                            for (const DeviceBody& d : rows) states.push_back(stateOf(d));
-                           if (!late->forecast.arrived(states, time)) return;
-                           late->compare(expected, states, time, 1);
+                           late->states.keep(time, states);
+                           if (!late->forecast.arrived(states, moved)) return;
                            for (size_t k = 0; k < rows.size(); ++k) late->faults[k] |= rows[k].faults;
                        });
 }

@@ -10,6 +10,7 @@
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/solids/bodies.h"
 #include "fluid/sim/solids/body_forecast.h"
+#include "fluid/sim/solids/body_states.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_state.h"
 #include "shaders/fluid/solids/body_state.h"
@@ -77,12 +78,13 @@ class BodyPasses {
     void beginFrame(const vec3& gravity, double seconds, bool exact);
     // Sums the forces and moves the bodies: on the GPU, or it waits for the forces (some KB, one round trip) and calls the host.
     void advance(const StepParams& step, Particles& particles, double seconds);
-    void endFrame();
+    void endFrame(double time);                           // s, of the world
     bool isAhead() const { return ahead_ && !settled_; }  // the GPU has moved them, and states() and loads() are not exact
     // Makes states() and loads() exact: waits if isAhead().
     void settle();
-    // For pictures: states(), which are settled if a body has lately moved otherwise than expected.
-    const std::vector<BodyState>& shown();
+    BodyRows rows() const;
+    // FluidWorld::bodiesAt; `time` is not now.
+    std::optional<std::vector<BodyState>> statesAt(double time) const;
     void settleNear(const vec3& p, float spacing);  // only if a body may be at `p` (m)
     uint64_t waits() const { return waits_; }       // of all functions here on a GPU, so far
     uint64_t strays() const { return strays_; }     // bodies that moved further than foreseen while they were free: on a GPU, late
@@ -121,11 +123,7 @@ class BodyPasses {
     struct Late {
         BodyForecast forecast;
         std::vector<uint32_t> faults;  // of each body, that arrived since they were last looked at
-        float most = 0;                // m, how far a body may be from where it is expected
-        std::vector<float> reach;      // m, of each body
-        double restlessUntil = -1;     // s: until then they may move otherwise than expected
-        // They were expected there at `time`, and are there: `scale` times as far away as they would be in a picture.
-        void compare(std::span<const BodyState> expected, std::span<const BodyState> states, double time, float scale);
+        BodyStates states;
     };
     void writeStates();  // to the device
     void writeMotions(std::span<const vec4> balls);
@@ -162,8 +160,7 @@ class BodyPasses {
     double pushedFrom_ = 0;
     uint64_t waits_ = 0, strays_ = 0;
     bool friction_ = false;
-    float spacing_ = 0;     // m, of the fluid
-    double frameTime_ = 0;  // s, of this frame
+    float spacing_ = 0;  // m, of the fluid
 };
 
 }  // namespace rivulet

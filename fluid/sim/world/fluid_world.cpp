@@ -22,7 +22,7 @@ FluidWorld::~FluidWorld() = default;
 const FluidParams& FluidWorld::params() const { return impl_->params; }
 std::vector<float> FluidWorld::pressures() const { return impl_->method->pressures(*impl_->device, impl_->particles, impl_->step); }
 const FluidStats& FluidWorld::stats() const {
-    impl_->figures->bodyWaits = impl_->bodies.waits();  // with those of pictures, which come after a step
+    impl_->figures->bodyWaits = impl_->bodies.waits();  // with those of bodies(), which come after a step
     return *impl_->figures;
 }
 float FluidWorld::fastestFall() const { return impl_->fastestFall(); }
@@ -37,7 +37,13 @@ const std::vector<BodyState>& FluidWorld::bodies() const {
     impl_->bodies.settle();
     return impl_->bodies.states();
 }
-const std::vector<BodyState>& FluidWorld::expectedBodies() const { return impl_->bodies.shown(); }
+const std::vector<BodyState>& FluidWorld::expectedBodies() const { return impl_->bodies.states(); }
+std::optional<std::vector<BodyState>> FluidWorld::bodiesAt(double time) const {
+    const BodyPasses& all = impl_->bodies;
+    if (time == impl_->clock.time && !all.isAhead()) return all.states();
+    return all.statesAt(time);
+}
+BodyRows FluidWorld::bodyRows() const { return impl_->bodies.rows(); }
 const std::vector<BodyLoad>& FluidWorld::bodyLoads() const {
     impl_->bodies.settle();
     return impl_->bodies.loads();

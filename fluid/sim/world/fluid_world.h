@@ -11,6 +11,7 @@
 #include "fluid/sim/forces/force.h"
 #include "fluid/sim/query/volumes.h"
 #include "fluid/sim/query/water_query.h"
+#include "fluid/sim/solids/body_states.h"
 #include "fluid/sim/solids/wet_surface.h"
 #include "fluid/sim/sources/emitter.h"
 #include "fluid/sim/world/fluid_params.h"
@@ -165,9 +166,13 @@ class FluidWorld {
     const std::vector<Pose>& poses() const;          // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
     const std::vector<BodyState>& bodies() const;    // of the last substep; waits on a GPU that moves bodies (BodyHost::isFree)
     const std::vector<BodyLoad>& bodyLoads() const;  // as bodies()
-    const std::vector<BodyState>& expectedBodies() const;  // for pictures: expected from earlier ones; waits in rapid motion
-    std::vector<Pose> drawnPoses() const;                  // the same, as ParticleView::drawn
-    uint64_t voxelsRewritten() const;                      // of deforming solids, since the start
+    // Where they are expected now, by earlier states: exact where the host moves them. Never waits.
+    const std::vector<BodyState>& expectedBodies() const;
+    // The bodies at an earlier `time` (s, of time()), exact; of the last frames, if their states have arrived; else nothing. Never waits.
+    std::optional<std::vector<BodyState>> bodiesAt(double time) const;
+    BodyRows bodyRows() const;
+    std::vector<Pose> drawnPoses() const;  // the same, as ParticleView::drawn
+    uint64_t voxelsRewritten() const;      // of deforming solids, since the start
     Device& device() const;
 
     // Everything in a world, its inputs included, is float and relative to its origin, a place (m) in the host's world. setOrigin() moves

@@ -265,7 +265,7 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     const FluidParams& p = params;
     clock.lastSubsteps = substeps;
     clock.time += simulated;
-    bodies.endFrame();
+    bodies.endFrame(clock.time);
     if (probes) probes->end(std::shared_ptr<ProbeFrame>(figures, &figures->loads), clock.time, simulated);
     gatherForDrawing();
     if (simulated > 0) volumes.count(step, particles, clock.time);

@@ -372,7 +372,11 @@ static void bodies_are_pushed_as_Archimedes_says(rivulet_context* context) {
     o.body_host = NULL;
     DONE(rivulet_world_create(context, &o, &world, &why));
     run(world, 9);
+    rivulet_body_state expected;
+    DONE(rivulet_world_expected_bodies(world, &expected, 1, &why));
     DONE(rivulet_world_bodies(world, &at, 1, &why));
+    CHECK(fabs(expected.pose.position[1] - at.pose.position[1]) < 0.005); /* it falls freely */
+    REFUSED(rivulet_world_expected_bodies(world, &expected, 2, &why), "1 bodies");
     CHECK(fabs(at.velocity[1] + 9.81 * 0.15) < 0.02 && fabs(at.pose.position[1] - (0.75 - 0.5 * 9.81 * 0.0225)) < 0.02);
     run(world, 171);
     DONE(rivulet_world_bodies(world, &at, 1, &why));
@@ -483,7 +487,8 @@ static void drops_run_down_a_skin(rivulet_context* context) {
     rivulet_skin* skin = NULL;
     /* One triangle's uvs on the other's: the skin is made, and the host is told. */
     const float twice[8] = {0, 0, 1, 0, 1, 1, 1, 0};
-    const rivulet_mesh folded = {.size = sizeof folded, .positions = at, .vertices = 4, .indices = triangles, .indices_count = 6, .uvs = twice};
+    const rivulet_mesh folded = {
+        .size = sizeof folded, .positions = at, .vertices = 4, .indices = triangles, .indices_count = 6, .uvs = twice};
     o.mesh = &folded;
     said = 0;
     DONE(rivulet_skin_create(context, &o, &skin, &why));

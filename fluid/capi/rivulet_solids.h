@@ -1,0 +1,81 @@
+/* rivulet.h: walls and floating bodies, as a host gives them, and the host's rigid-body engine. */
+#ifndef RIVULET_SOLIDS_H
+#define RIVULET_SOLIDS_H
+/* NOLINTBEGIN(readability-identifier-naming): C's own way with names */
+
+#include "rivulet_context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct rivulet_pose {
+    float position[3]; /* m */
+    float rotation[4]; /* unit quaternion, x y z w; all 0: none */
+} rivulet_pose;
+
+typedef struct rivulet_mesh {
+    size_t size;
+    const float* positions; /* m, 3 a vertex */
+    size_t vertices;
+    const uint32_t* indices; /* 3 a triangle */
+    size_t indices_count;
+    const float* uvs;  /* 2 a vertex; for skins */
+    float friction;    /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
+    float restitution; /* of a wall: 0 to 1; negative: that of fluid.collision */
+    /* Of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 2: deforms with rivulet_inputs.shapes;
+       0: stands still. */
+    uint32_t moves;
+    int32_t resolution; /* of a wall: voxels along its longest side; 0: voxels of a quarter of the fluid's spacing */
+    rivulet_pose pose;  /* of a wall that moves: at t = 0 */
+    /* m, the low and the high corner of a box in which a wall that deforms always is; voxels are kept for all of it, `resolution` of them
+       along its longest side. All 0: the box of its positions, longer by half of its longest side in each direction. */
+    float reach_low[3], reach_high[3];
+    /* Of a wall: the collision layers that it is on (bit k is layer k, of 16; 0: the first), and those that it meets (0: all). The water,
+       with fluid.collision.layers and .meets, passes through it unless each is on a layer that the other meets. */
+    uint32_t layers, meets;
+} rivulet_mesh;
+
+/* A floating body, coupled to the fluid both ways. The origin of its frame is its centre of mass, its axes are the principal axes. Or it is
+   given as a closed mesh with a density and without samples: mass, inertia and volume are then found from these, and the frame is that of
+   the mesh. */
+typedef struct rivulet_body {
+    size_t size;
+    const float* samples; /* m, 3 each: points half a spacing below its surface, about a spacing apart; NULL: those of mesh */
+    size_t samples_count;
+    float mass;                 /* kg; 0: the body is fixed */
+    float inertia[3];           /* kg m^2 */
+    float volume;               /* m^3 */
+    rivulet_pose pose;          /* of its frame, at t = 0 or when it is added */
+    const rivulet_mesh* mesh;   /* its surface, in its frame; NULL: it does not get wet (fluid.wetness), and no water makes room for it */
+    float density;              /* kg/m^3, without samples */
+    float velocity[3], spin[3]; /* as of rivulet_body_state, at t = 0 or when it is added */
+    uint32_t layers, meets;     /* as of rivulet_mesh: whether the water meets it. A body_host knows which bodies meet each other */
+} rivulet_body;
+typedef struct rivulet_body_state {
+    rivulet_pose pose;
+    float velocity[3], spin[3]; /* m/s, of the centre of mass; rad/s; in world axes */
+} rivulet_body_state;
+typedef struct rivulet_body_load {
+    double force[3], torque[3]; /* N; N m about the centre of mass; in world axes */
+} rivulet_body_load;
+/* The host's rigid-body engine, which moves the bodies. NULL functions: bodies collide with nothing but fluid. */
+typedef struct rivulet_body_host {
+    size_t size;
+    void* user;
+    /* Advances all bodies by `seconds` under the loads, gravity (m/s^2) and the host's own contacts. Called once a substep. */
+    void (*advance)(void* user, const rivulet_body_load* loads, const float* gravity, double seconds, rivulet_body_state* states,
+                    size_t count);
+    void (*reset)(void* user, const rivulet_body_state* states,
+                  size_t count); /* sets the bodies to these states: those of t = 0 after a reset */
+    /* May be NULL. added: a body enters the world, and is the last of the next states. removed: it leaves the world, and the next states
+       are without it. */
+    void (*added)(void* user, uint32_t id, const rivulet_body_state* state);
+    void (*removed)(void* user, uint32_t id);
+} rivulet_body_host;
+
+#ifdef __cplusplus
+}
+#endif
+/* NOLINTEND(readability-identifier-naming) */
+#endif

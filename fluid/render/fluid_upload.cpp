@@ -187,7 +187,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         out.bodyCount = bodies.count;
         if (same)
             out.bodies = static_cast<unsigned>(bodies.rows->handle());
-        else if (sharing_ || bodies.current)
+        else if (bodies.current)
             arrays.push_back({bodies.rows, {}, &bodies_, &out.bodies, bodies.count * sizeof(DeviceBody), false});
     }
     if (out.count > 0) {

@@ -53,10 +53,12 @@ struct FluidView {
     unsigned pendants = 0;
     uint32_t pendantCount = 0;
     // Bodies that a GPU moves: GL buffer name, rows of DeviceBody (shaders/fluid/solids/body_state.h) in the order of FluidWorld::bodyIds.
-    // They are valid where `bodiesMoved` is not null, and the same while it is the same object; else the host knows where the bodies are.
+    // They are valid where `bodiesMoved` is not null, and the same while it is the same object; else the host knows where the bodies are,
+    // and the name may be 0. Meshes with plain materials are drawn by them; textured, layered and clear ones where the host expects them.
     unsigned bodies = 0;
-    uint32_t bodyCount = 0;
+    uint32_t bodyCount = 0;  // also where the host moves them now; 0: always
     std::shared_ptr<const void> bodiesMoved = {};
+    bool hasNewPoses() const { return bodies != 0 && bodyCount > 0 && bodiesMoved != nullptr; }
     Bounds bounds;  // m, world: the box of the water, which is cut there and casts a shadow from there; empty: no cut, no shadow
 };
 

@@ -21,13 +21,14 @@ void LateView::dropOlder() {
     }
 }
 
-// To where they were: their states have arrived before the particles.
+// To where they were: their states have arrived before the particles. A body that has no state, since the world has fewer bodies now,
+// stays.
 void LateView::moveBodies(Frame& frame, const FluidWorld& world) {
     if (!std::exchange(frame.moved, false)) return;
     const std::optional<std::vector<BodyState>> states = world.bodiesAt(frame.time);
     if (!states) return;
     for (size_t n = 0; n < frame.solids.nodes().size(); ++n)
-        if (const int body = frame.solids.nodes()[n].body; body >= 0)
+        if (const int body = frame.solids.nodes()[n].body; body >= 0 && static_cast<size_t>(body) < states->size())
             frame.solids.moveBody(n, matrixOf((*states)[static_cast<size_t>(body)].pose));
 }
 

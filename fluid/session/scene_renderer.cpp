@@ -171,17 +171,18 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
     return ok();
 }
 
-// Meshes of bodies on the device are drawn where it has them.
+// Meshes of bodies on the device are drawn where it has them. Their programs are made before it moves a body for the first time.
 Status SceneRenderer::readPoses(const FluidView& fluid, const Scene& scene) {
     const auto isBody = [](const Node& node) { return node.body >= 0; };
-    if (fluid.bodies == 0 || std::ranges::none_of(scene.nodes(), isBody)) return ok();
+    if (fluid.bodyCount == 0 || std::ranges::none_of(scene.nodes(), isBody)) return ok();
+    if (Status made = render_.preparePosed(); !made || !fluid.hasNewPoses()) return made;
     if (!poseRows_) {
         GLuint name = 0;
         glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
         poseRows_ = gpu::TextureName(name);
     }
     glTextureBuffer(poseRows_.name(), GL_RGBA32F, fluid.bodies);
-    return render_.preparePosed();
+    return ok();
 }
 
 Result<DrawnMesh> SceneRenderer::drawnOf(const Scene& scene, size_t at, const mat4& toWorld, const FluidView& fluid) {
@@ -193,7 +194,7 @@ Result<DrawnMesh> SceneRenderer::drawnOf(const Scene& scene, size_t at, const ma
     if (node.layer && node.layer->texels != nullptr && *node.layer->texels) drawn.layer = node.layer.get();
     if (fluid.wetness != 0 && canBeWet(node.material)) drawn.wet = node.wet;
     if (!isPart(node.material) && drawn.layer == nullptr) {
-        const std::optional<size_t> body = fluid.bodiesMoved && !node.material.clear ? scene.bodyOf(at) : std::nullopt;
+        const std::optional<size_t> body = fluid.hasNewPoses() && !node.material.clear ? scene.bodyOf(at) : std::nullopt;
         if (!body) return drawn;
         const Node& moved = scene.nodes()[*body];
         drawn.pose = DevicePose{poseRows_.name(), moved.body * kPoseTexels, scene.toBody(at)};

@@ -180,13 +180,15 @@ std::shared_ptr<const DeformedVertices> readLater(const std::shared_ptr<const De
     all->bounds = deformer->bounds();
     all->version = deformer->version();
     all->of = deformer;
-    for (const auto& [from, to] :
-         {std::pair(&deformer->positions(), &DeformedVertices::positions), std::pair(&deformer->normals(), &DeformedVertices::normals)})
-        deformer->device().readLater(*from, deformer->vertices() * sizeof(vec4), [all, to](std::span<const std::byte> bytes) {
+    const auto read = [&](const Buffer& from, std::vector<vec4> DeformedVertices::*to) {
+        deformer->device().readLater(from, deformer->vertices() * sizeof(vec4), [all, to](std::span<const std::byte> bytes) {
             std::vector<vec4>& vertices = (*all).*to;
             vertices.resize(bytes.size() / sizeof(vec4));
             std::memcpy(vertices.data(), bytes.data(), bytes.size());
         });
+    };
+    read(deformer->positions(), &DeformedVertices::positions);
+    read(deformer->normals(), &DeformedVertices::normals);
     return all;
 }
 

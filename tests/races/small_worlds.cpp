@@ -470,7 +470,7 @@ Answer scene(Device& device, const char* name, const std::vector<std::string>& s
     return a;
 }
 Answer sheet(Device& device) {
-    return scene(device, "waving_sheet", {"fluid.spacing=0.1", "colliders.0.resolution=12", "fluid.pbf.minSubsteps=1"}, 2);
+    return scene(device, "waving_sheet", {"fluid.spacing=0.05", "colliders.0.resolution=24", "fluid.pbf.minSubsteps=1"}, 2);
 }
 Answer rain(Device& device) {
     return scene(device, "window_rain", {"flow.0.mapSize=32", "flow.0.liquid.capacity=512", "flow.0.liquid.filmCell=0.006"}, 3);

@@ -19,6 +19,12 @@ const std::set<std::string> kMissing = {"bench/rate_copy",         "bench/rate_m
                                         "fluid/sleep/sleep_drawn", "fluid/sources/forget", "fluid/surface/ellipsoids_free",
                                         "fluid/surface/foam_drawn"};
 
+size_t dispatchesOf(const CountingDevice& device) {
+    size_t all = 0;
+    for (const auto& [variant, count] : device.ran()) all += count.dispatches;
+    return all;
+}
+
 class SmallWorlds : public ::testing::TestWithParam<const char*> {};
 
 // Minutes: for RIVULET_RACES=full, as tests/races/run.sh sets it.
@@ -34,8 +40,10 @@ TEST_P(SmallWorlds, RunTheKernelsOfAGpu) {
         SCOPED_TRACE(world.name);
         std::printf("world %s\n", world.name);
         std::fflush(stdout);
+        const size_t before = dispatchesOf(device);
         const races::Answer answer = world.run(device);
         EXPECT_GT(answer.exact.size() + answer.near.size(), 4U);
+        EXPECT_GT(dispatchesOf(device), before);  // else it has no particles
     }
     EXPECT_EQ(gpu->device->health().state, DeviceHealth::works) << gpu->device->health().why;
     std::set<std::string> kernels;

@@ -42,7 +42,7 @@ class Scene {
     // The node of the body that `node` moves with: itself or one above it; empty: none. And the transform of `node` to it.
     std::optional<size_t> bodyOf(size_t node) const;
     mat4 toBody(size_t node) const;
-    // Moves the node of a body; what is wet of it and below it stays wet.
+    // Moves the node of a body. The wet places of its mesh, and of the nodes below it, move along.
     void moveBody(size_t node, const mat4& local);
     // The bounds of all visible meshes, m, world; empty if there are none.
     Bounds bounds() const;

@@ -107,8 +107,8 @@ void AirDrops::listParticles(const Inputs& inputs, double seconds) {
                       });
 }
 
-// A particle becomes drops if its path, half a spacing longer, meets a skin. The drops lie side by side over its width. Those whose own
-// path meets the skin land; the others fly on. If the skin has no free slots, the particle passes.
+// A particle whose path meets a skin becomes several drops, side by side over the particle's width; the path is extended by half a spacing.
+// Each drop has a path of its own: if that meets a skin, the drop lands there, else it flies on. A skin without free slots takes none.
 void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
     constexpr double kLongest = 0.1;  // s
     constexpr double kAside = 0.1;    // of its way, chosen by eye

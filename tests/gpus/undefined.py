@@ -149,7 +149,7 @@ class Uniformity:
         else:
             self.divergent.setdefault(f.result, set())
         after = postdominators(f, exits)
-        deciding = {}                          # label -> blocks whose branch decides whether this block runs
+        deciding = {}                          # block -> the blocks that end in a branch on which it depends whether this one runs
         for b in f.order:
             ways = list(b.next) + ([None] if b.label in exits and b.next else [])
             if len(set(ways)) < 2:

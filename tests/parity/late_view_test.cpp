@@ -75,7 +75,8 @@ TEST_F(LateViewTest, ParticlesAndSolidsAreOfOneTime) {
     EXPECT_GT(behind, 0U);  // else this tested nothing
 }
 
-// What is shown of a session on cl that is never waited for but in frames whose state is compared: `compare(shown, exact)`.
+// Shows a session on cl as the window does. In every third frame the exact state is read, too, with a wait: `compare` receives it together
+// with the picture of the same time.
 template <class State>
 void showLate(const SceneFile& scene, size_t frames, State (*exactOf)(const Session&),
               void (*compare)(const LateView::Shown& shown, const State& exact)) {

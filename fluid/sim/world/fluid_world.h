@@ -151,33 +151,29 @@ class FluidWorld {
 
     const FluidParams& params() const;
     ParticleView particles() const;
-    WetnessView wetness() const;      // null if fluid.wetness.on is off
-    const FluidStats& stats() const;  // late on a GPU
-    float fastestFall() const;        // m/s, speed after the largest possible fall, including the initial speed
-    double time() const;              // s simulated
-    double pending() const;           // s passed to step() that are pending for a whole fluid.fixedStep
-    double dropped() const;           // s passed to step() that will not be simulated
-    int lastSubsteps() const;         // of the last step(), not late
-    // The pressures of the last substep, Pa, in the order of particles(); for pbf, the pressure equivalent to its corrections; with dfsph
-    // negative where water is under tension. They are the pressures of the pair forces: on a lattice with the default support they are 3 %
-    // above the transmitted pressure, and for a single particle the error is 6 to 10 %. For the load on a wall use fluid.probes. Reads back
-    // and waits.
+    WetnessView wetness() const;              // null if fluid.wetness.on is off
+    const FluidStats& stats() const;          // late on a GPU
+    float fastestFall() const;                // m/s, speed after the largest possible fall, including the initial speed
+    double time() const;                      // s simulated
+    double pending() const, dropped() const;  // s passed to step() that wait for a whole fluid.fixedStep; that will not be simulated
+    int lastSubsteps() const;                 // of the last step(), not late
+    // The pressures of the pair forces in the last substep, Pa, in the order of particles(); pbf: equivalent to its corrections; dfsph:
+    // negative under tension. On a lattice with the default support they are 3 % above the transmitted pressure, for a single particle the
+    // error is 6 to 10 %. For the load on a wall use fluid.probes. Reads back and waits.
     std::vector<float> pressures() const;
     const std::vector<Pose>& poses() const;          // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
     const std::vector<BodyState>& bodies() const;    // of the last substep; waits on a GPU that moves bodies (BodyHost::isFree)
     const std::vector<BodyLoad>& bodyLoads() const;  // as bodies()
-    // Where they are expected now, by earlier states: exact where the host moves them. Never waits.
+    // Without waiting: where bodies are expected now (exact where the host moves them); where they were at an earlier time(), if known.
     const std::vector<BodyState>& expectedBodies() const;
-    // The bodies at an earlier `time` (s, of time()), exact; of the last frames, if their states have arrived; else nothing. Never waits.
     std::optional<std::vector<BodyState>> bodiesAt(double time) const;
     BodyRows bodyRows() const;
     std::vector<Pose> drawnPoses() const;  // the same, as ParticleView::drawn
     uint64_t voxelsRewritten() const;      // of deforming solids, since the start
     Device& device() const;
 
-    // Everything in a world, its inputs included, is float and relative to its origin, a place (m) in the host's world. setOrigin() moves
-    // all of it in the host's world and costs nothing. A host that moves the origin of its own coordinates by `by` calls setOrigin(origin()
-    // - by): particles, solids and sources then stay where they are in space, and poses that it passes stay the same.
+    // All in a world, inputs included, is float and relative to its origin, a place (m) in the host's world, which costs nothing to move. A
+    // host that moves its own origin by `by` calls setOrigin(origin() - by): all stays where it is in space, and its poses stay the same.
     const dvec3& origin() const;
     void setOrigin(const dvec3& origin);
     dvec3 toHost(const vec3& p) const { return origin() + dvec3(p); }
@@ -187,13 +183,12 @@ class FluidWorld {
     // host of the bodies has a state that it cannot save; the last step was interrupted.
     Status savable() const;
     void save(WorldState& state);  // of a savable world
-    // Continues from a saved state, on any device. Other owners of sections in `state` take theirs before. Error: as WorldState::take and
-    // allTaken; the params that are `fixed` or the solids differ. The world is then as it was.
+    // Continues from a saved state, on any device, after other owners of sections took theirs. Error: as WorldState::take and allTaken;
+    // other `fixed` params or solids. The world is then as it was.
     Status restore(WorldState& state);
-    // Continues from another world with the same box and spacing, with solids at `poses` and with `shapes` (as FluidInputs; all of them).
-    // It takes over the time, the particles except those inside a solid here, the bodies if they are the same, and the foam if this world
-    // has as many slots for it. The counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box or spacing,
-    // liquids that this world does not have, more particles than this world has slots.
+    // Continues from another world, with solids at `poses` and with all `shapes` (as FluidInputs). It takes over the time, the particles
+    // outside solids here, the bodies if they are the same, and the foam if this world has as many slots. The counts of emitters and sinks
+    // begin at 0. Waits for both. Error (badInput): another box or spacing, liquids that are not here, too few slots for particles.
     Status continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 
   private:

@@ -1,4 +1,4 @@
-// Bodies that a GPU moves while they are free, and the host's knowledge of them.
+// Bodies that a GPU moves, and the host's knowledge of them: it finds their contacts with states that it expects.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -12,6 +12,16 @@ namespace {
 BodyState stateOf(const DeviceBody& d) {
     return {{vec3(d.position), quat(d.rotation.w, d.rotation.x, d.rotation.y, d.rotation.z)}, vec3(d.velocity), vec3(d.spin)};
 }
+
+// The fluid's mean loads in the `seconds` that a frame of theirs has been.
+std::vector<BodyLoad> meanLoads(std::span<const DeviceBody> rows, double seconds) {
+    std::vector<BodyLoad> loads(rows.size());
+    for (size_t k = 0; k < rows.size() && seconds > 0; ++k)
+        loads[k] = {dvec3(vec3(rows[k].pushed)) / seconds, dvec3(vec3(rows[k].pushedAngular)) / seconds, {}, {}};
+    return loads;
+}
+
+constexpr float kSame = 0.5F;  // spacings: a contact that has moved no further from one frame to the next is the same
 
 // Of a spacing, how far off a body is shown at most, but for the first frames after a blow; s, how long its states are then waited for.
 constexpr float kShown = 0.1F;
@@ -52,13 +62,14 @@ void BodyPasses::writeMotions(std::span<const vec4> balls) {
                           static_cast<float>(filter_.added(k)),
                           static_cast<float>(samplesOf(k)),
                           static_cast<uint32_t>(bodies_.size()),
-                          0};
+                          touching_.slots.empty() ? NO_SLOT : touching_.slots[k]};
     }
     device_->write(motions_, std::as_bytes(std::span(motionRows_)));
 }
 
 void BodyPasses::stay() {
     late_.reset();
+    touching_ = {};
     ahead_ = false;
     settled_ = true;
 }
@@ -85,7 +96,7 @@ void BodyPasses::settle() {
     const double scale = back > 0 ? std::max(kLatest * frameTime_ / back, 1.0) : 0.0;
     late_->compare(expected, states_, time_, static_cast<float>(scale * scale));
     for (size_t k = 0; k < rows.size(); ++k) late_->faults[k] |= rows[k].faults;
-    late_->forecast.arrived(states_, time_);
+    late_->forecast.arrived(states_, meanLoads(rows, time_ - frameBegin_), time_);
     settled_ = true;
 }
 
@@ -99,63 +110,118 @@ void BodyPasses::settleNear(const vec3& p, float spacing) {
         if (const vec4& ball = motionRows_[k].ball; glm::length(p - vec3(ball)) < ball.w + reach_[k] + 2 * spacing) settle();
 }
 
+bool BodyPasses::findContacts(const vec3& gravity, double seconds) {
+    BodyForecast& forecast = late_->forecast;
+    const double end = time_ + seconds;
+    const float strength = glm::length(gravity);
+    std::vector<BodyContact> found;
+    const auto ask = [&](double from) {
+        found.clear();
+        return host_.contacts(host_.self, forecast.at(time_), forecast.balls(from, end, strength), seconds, found);
+    };
+    forecast.expect(nullptr, gravity, time_, end);
+    // Far from everything since the last report: then they have moved freely.
+    if (touching_.touching == 0 && !ask(forecast.time())) return false;
+    if (touching_.touching > 0 || !found.empty()) {
+        forecast.expect(&host_, gravity, time_, end);
+        if (!ask(time_)) return false;
+    }
+    std::vector<bool> moves;
+    moves.reserve(bodies_.size());
+    for (const Body& b : bodies_) moves.push_back(b.shape.mass > 0);
+    touching_ = contactRows(found, moves, ahead_ ? touching_ : ContactRows(), kSame * spacing_);
+    return touching_.touching <= MOST_TOUCHING && uploadContacts();
+}
+
+bool BodyPasses::uploadContacts() {
+    if (touching_.touching == 0) return true;
+    const auto holds = [&](Buffer& buffer, size_t bytes) {
+        if (buffer.bytes() >= bytes) return true;
+        Result<Buffer> made = device_->allocate(2 * bytes);
+        if (!made) device_->forgiveFull();  // the host moves the bodies then
+        if (!made) return false;
+        buffer = std::move(*made);
+        return true;
+    };
+    const size_t states = touching_.contacts.size() * sizeof(ContactState);
+    if (contactStates_.bytes() < states || contactsBefore_.bytes() < states)
+        for (ContactRow& row : touching_.contacts) row.before = NO_CONTACT;  // their impulses are in what is replaced here
+    if (!holds(contactStates_, states) || !holds(contactsBefore_, states) ||
+        !holds(contacts_, touching_.contacts.size() * sizeof(ContactRow)) || !holds(pairs_, touching_.pairs.size() * sizeof(ContactPair)) ||
+        !holds(colours_, touching_.colours.size() * sizeof(uint32_t)))
+        return false;
+    std::swap(contactStates_, contactsBefore_);
+    device_->writeAll<ContactPair>(pairs_, touching_.pairs);
+    device_->writeAll<ContactRow>(contacts_, touching_.contacts);
+    device_->writeAll<uint32_t>(colours_, touching_.colours);
+    return true;
+}
+
+void BodyPasses::moveOnDevice(const StepParams& step) {
+    StepParams s = step;
+    const bool first = std::exchange(frameBegins_, false);
+    if (first) frameBegin_ = time_;
+    s.force = vec4(static_cast<float>(time_ - frameBegin_), first ? 1.0F : 0.0F, static_cast<float>(touching_.colourCount()), 0.0F);
+    if (touching_.touching > 0)
+        device_->run(touch_, s, {&rows_, &motions_, &deviceBodies_, &pairs_, &contacts_, &colours_, &contactStates_, &contactsBefore_},
+                     TOUCHING_GROUP);
+    else
+        device_->run(advance_, s, {&rows_, &motions_, &deviceBodies_}, static_cast<uint32_t>(bodies_.size()));
+    settled_ = false;
+}
+
 void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
     if (!mayBeAhead_ || !any() || sampleCount_ == 0) return;
     if (!late_) {
         late_ = std::make_shared<Late>(Late{BodyForecast(bodies_), std::vector<uint32_t>(bodies_.size()), kShown * spacing_, reach_});
-        pushed_.assign(bodies_.size(), dvec3(0.0));
+        pushed_.assign(bodies_.size(), {});
         pushedFrom_ = time_;
     }
     frameTime_ = seconds;
-    std::vector<vec4> balls;
-    const auto areFree = [&] {
-        balls = late_->forecast.balls(time_, time_ + seconds, glm::length(gravity));
-        return host_.isFree(host_.self, balls, seconds);
-    };
+    frameBegins_ = true;
     if (!ahead_) {
-        const double passed = time_ - pushedFrom_;
-        std::vector<vec3> accelerations(bodies_.size(), vec3(0.0F));
-        for (size_t k = 0; k < bodies_.size(); ++k)
-            if (const double mass = bodies_[k].shape.mass; mass > 0)
-                accelerations[k] = gravity + (passed > 0 ? vec3(pushed_[k] / (mass * passed)) : vec3(0.0F));
-        late_->forecast.set(states_, accelerations, time_);
-        std::ranges::fill(pushed_, dvec3(0.0));
+        std::vector<BodyLoad> loads(bodies_.size());
+        if (const double passed = time_ - pushedFrom_; passed > 0)
+            for (size_t k = 0; k < bodies_.size(); ++k) loads[k] = {pushed_[k].force / passed, pushed_[k].torque / passed, {}, {}};
+        late_->forecast.set(states_, loads, time_);
+        pushed_.assign(bodies_.size(), {});
         pushedFrom_ = time_;
     }
-    const bool faulty = ahead_ && std::ranges::any_of(late_->faults, [](uint32_t f) { return f != 0; });
-    if (exact || faulty) settle();
+    if (exact) settle();
     for (size_t k = 0; k < bodies_.size(); ++k) {
-        const bool strayed = (std::exchange(late_->faults[k], 0U) & BODY_STRAYED) != 0;
-        late_->forecast.frame(k, strayed);
-        if (strayed) ++strays_;
+        const uint32_t faults = std::exchange(late_->faults[k], 0U);
+        if ((faults & BODY_MISLED) != 0) misled_ = k;
+        late_->forecast.frame(k, (faults & BODY_STRAYED) != 0);
+        if ((faults & BODY_STRAYED) != 0) ++strays_;
     }
-    bool free = !exact && areFree();
-    if (!free && isAhead()) {
+    if (exact || !findContacts(gravity, seconds)) {
         settle();
-        free = !exact && areFree();
+        touching_ = {};
+        ahead_ = false;
+        return;
     }
-    if (free) {
-        writeMotions(balls);
-        if (!ahead_ || faulty) writeStates();  // without faults
-    }
-    ahead_ = free;
+    if (isAhead()) states_ = late_->forecast.at(time_);
+    writeMotions(late_->forecast.balls(time_, time_ + seconds, glm::length(gravity)));
+    if (!ahead_) writeStates();
+    ahead_ = true;
 }
 
 void BodyPasses::endFrame() {
     if (!ahead_) return;
-    device_->readLater(deviceBodies_, bodies_.size() * sizeof(DeviceBody),
-                       [weak = std::weak_ptr(late_), time = time_, expected = states_](std::span<const std::byte> bytes) {
-                           const std::shared_ptr<Late> late = weak.lock();
-                           if (!late) return;  // the bodies have changed meanwhile
-                           std::vector<DeviceBody> rows(bytes.size() / sizeof(DeviceBody));
-                           std::memcpy(rows.data(), bytes.data(), bytes.size());
-                           std::vector<BodyState> states;
-                           states.reserve(rows.size());
-                           for (const DeviceBody& d : rows) states.push_back(stateOf(d));
-                           if (!late->forecast.arrived(states, time)) return;
-                           late->compare(expected, states, time, 1);
-                           for (size_t k = 0; k < rows.size(); ++k) late->faults[k] |= rows[k].faults;
-                       });
+    device_->readLater(
+        deviceBodies_, bodies_.size() * sizeof(DeviceBody),
+        [weak = std::weak_ptr(late_), time = time_, seconds = time_ - frameBegin_, expected = states_](std::span<const std::byte> bytes) {
+            const std::shared_ptr<Late> late = weak.lock();
+            if (!late) return;  // the bodies have changed meanwhile
+            std::vector<DeviceBody> rows(bytes.size() / sizeof(DeviceBody));
+            std::memcpy(rows.data(), bytes.data(), bytes.size());
+            std::vector<BodyState> states;
+            states.reserve(rows.size());
+            for (const DeviceBody& d : rows) states.push_back(stateOf(d));
+            if (!late->forecast.arrived(states, meanLoads(rows, seconds), time)) return;
+            late->compare(expected, states, time, 1);
+            for (size_t k = 0; k < rows.size(); ++k) late->faults[k] |= rows[k].faults;
+        });
 }
 
 }  // namespace rivulet

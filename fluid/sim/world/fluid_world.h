@@ -163,7 +163,7 @@ class FluidWorld {
     // and waits.
     std::vector<float> pressures() const;
     const std::vector<Pose>& poses() const;          // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
-    const std::vector<BodyState>& bodies() const;    // of the last substep; waits on a GPU that moves bodies (BodyHost::isFree)
+    const std::vector<BodyState>& bodies() const;    // of the last substep; waits on a GPU that moves bodies (BodyHost::contacts)
     const std::vector<BodyLoad>& bodyLoads() const;  // as bodies()
     const std::vector<BodyState>& expectedBodies() const;  // for pictures: expected from earlier ones; waits in rapid motion
     std::vector<Pose> drawnPoses() const;                  // the same, as ParticleView::drawn

@@ -1,0 +1,72 @@
+// Sequential impulses (Catto 2005, "Iterative Dynamics with Temporal Coherence"): a contact at a time, an impulse changes the velocities of
+// its two bodies so that its points separate, or approach no faster than their distance allows within the substep. The sum of its impulses,
+// not each one, must push and stay within the friction cone. The sums of one substep start the next. Overlaps are undone by velocities that
+// move the bodies once and are taken back afterwards, so that they add no energy ("relax", Catto 2024, "Solver2D").
+CONSTANT(float, PUSH_RATE, 10.0f);    // 1/s: how fast an overlap is undone
+CONSTANT(float, CALM_RATE, 2.0f);     // 1/s: the same for a small one; faster, with few iterations, stacks rock
+CONSTANT(float, PUSH_MOST, 1.0f);     // m/s: no overlap is undone faster
+CONSTANT(float, BOUNCE_FROM, 0.2f);   // m/s: slower contacts do not bounce, as in Bullet
+CONSTANT(float, MOST_PUSH, 1.0e36f);  // of a sum of squares: an impulse beyond it, or NaN, is none
+
+// Velocities of the bodies of a pair.
+STRUCT(PairSpeeds) {
+    vec4 a;      // m/s; w: 1/kg, 0: contacts do not move it
+    vec4 spinA;  // rad/s
+    vec4 b;
+    vec4 spinB;
+};
+
+// m/s, of the point of a against that of b.
+FN vec3 slipOf(PairSpeeds m, ContactState c) {
+    return m.a.xyz + cross(m.spinA.xyz, c.armA.xyz) - m.b.xyz - cross(m.spinB.xyz, c.armB.xyz);
+}
+
+// The velocities after an impulse (x along the normal, y and z along the tangents) on a, and its opposite on b.
+FN PairSpeeds pushed(PairSpeeds m, ContactState c, vec3 impulse) {
+    if (!SQUARE_BELOW(dot(impulse, impulse), MOST_PUSH)) return m;
+    vec3 push = c.normal.xyz * impulse.x + c.along.xyz * impulse.y + c.across.xyz * impulse.z;
+    m.a = vec4(m.a.xyz + push * m.a.w, m.a.w);
+    m.b = vec4(m.b.xyz - push * m.b.w, m.b.w);
+    m.spinA = vec4(m.spinA.xyz + c.turnA.xyz * impulse.x + c.alongA.xyz * impulse.y + c.acrossA.xyz * impulse.z, 0.0f);
+    m.spinB = vec4(m.spinB.xyz - c.turnB.xyz * impulse.x - c.alongB.xyz * impulse.y - c.acrossB.xyz * impulse.z, 0.0f);
+    return m;
+}
+
+// A unit vector at right angles to n.
+FN vec3 tangentOf(vec3 n) {
+    vec3 t = abs(n.x) > 0.6f ? vec3(n.y, -n.x, 0.0f) : vec3(0.0f, n.z, -n.y);
+    return t * (1.0f / sqrt(dot(t, t)));
+}
+
+// kg: what an impulse along a direction must overcome; `turnA`, `turnB`: the spins that it causes at 1 N s.
+FN float massAlong(vec3 direction, vec3 armA, vec3 armB, vec3 turnA, vec3 turnB, float inverse) {
+    float k = inverse + dot(direction, cross(turnA, armA) + cross(turnB, armB));
+    return k > 0.0f ? 1.0f / k : 0.0f;
+}
+
+// The impulse of a contact in the next iteration. Points that are apart may meet at the end of the substep. An overlap is undone (`undo`),
+// or only not increased, and then points that have not met are left to the next substep. `small`: m, an overlap that is small: what gravity
+// moves a body in a substep.
+FN vec3 nextImpulse(PairSpeeds m, ContactState c, float friction, float seconds, float small, bool undo) {
+    float separation = c.armB.w;
+    if (!undo && separation > 0.0f && !(c.impulse.x > 0.0f)) return vec3(0.0f, 0.0f, 0.0f);
+    vec3 slip = slipOf(m, c);
+    float most = separation / seconds;  // m/s, of approach
+    if (!(separation > 0.0f)) {
+        float over = min(separation + small, 0.0f);
+        most = undo ? max(PUSH_RATE * over + CALM_RATE * (separation - over), -PUSH_MOST) : 0.0f;
+    }
+    vec3 next;
+    next.x = max(c.impulse.x - c.normal.w * (dot(slip, c.normal.xyz) + most), 0.0f);
+    next.y = c.impulse.y - c.along.w * dot(slip, c.along.xyz);
+    next.z = c.impulse.z - c.across.w * dot(slip, c.across.xyz);
+    // Coulomb: the friction of two tangents together.
+    float size = sqrt(next.y * next.y + next.z * next.z);
+    if (size > friction * next.x) {
+        float kept = friction * next.x / size;
+        next.y = next.y * kept;
+        next.z = next.z * kept;
+    }
+    if (!SQUARE_BELOW(dot(next, next), MOST_PUSH)) next = vec3(0.0f, 0.0f, 0.0f);
+    return next;
+}

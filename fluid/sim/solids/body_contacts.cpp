@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "shaders/fluid/solids/body_state.h"
+
 namespace rivulet {
 
 namespace {

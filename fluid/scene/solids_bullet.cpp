@@ -304,7 +304,7 @@ struct BulletSolids::Impl {
         if (hand) return false;
         std::vector<ContactSolid> solids;
         solids.reserve(all.size());
-        for (const auto& solid : all) solids.push_back({solid.get(), vec3(0.0F), vec3(0.0F)});
+        for (const auto& solid : all) solids.push_back({solid.get(), vec3(0.0F), vec3(0.0F), 0});
         for (size_t k = 0; k < moving.size(); ++k) {
             moving[k]->setWorldTransform(to(now[k]));
             if (!(left > 0)) continue;
@@ -313,6 +313,7 @@ struct BulletSolids::Impl {
             btTransformUtil::calculateVelocity(to(now[k]), to(target[k]), static_cast<btScalar>(left), linear, angular);
             solid->velocity = from(linear);
             solid->spin = from(angular);
+            solid->seconds = left;
         }
         findContacts(world, probed, solids, states, balls, seconds, found);
         return true;

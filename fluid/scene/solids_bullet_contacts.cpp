@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -25,6 +27,7 @@ constexpr size_t kMostOfPair = 8;
 constexpr float kNear = 0.02F;      // of a body's size: it may touch what is so near, however little it moves
 constexpr float kBand = 0.15F;      // of a body's size, beside what it moves in the frame: so near its parts are looked at
 constexpr float kSame = 1.0e-3F;    // of a body's size: points that are so near are one
+constexpr float kFlat = 5.0e-3F;    // of a body's size: a corner that stands out by less is none
 constexpr float kAlike = 0.99999F;  // cosine: normals of one plane
 constexpr float kOfFace = 0.9F;     // cosine between the normals of a triangle and of a point of it where a body overlaps it
 
@@ -180,6 +183,28 @@ void filter(std::vector<Touch>& touches, float size, bool ball) {
     touches = std::move(kept);
 }
 
+// Of touches with one normal, those at the corners of what they span: the same from frame to frame, as what lies between them is not.
+void leaveOutline(std::vector<Touch>& touches, float size) {
+    std::vector<Touch> kept;
+    kept.reserve(touches.size());
+    std::vector<bool> done(touches.size());
+    for (size_t first = 0; first < touches.size(); ++first) {
+        if (done[first]) continue;
+        std::vector<Touch> alike;
+        std::vector<vec3> places;
+        std::vector<float> separations;
+        for (size_t k = first; k < touches.size(); ++k) {
+            if (done[k] || !(glm::dot(touches[k].normal, touches[first].normal) > kAlike)) continue;
+            done[k] = true;
+            alike.push_back(touches[k]);
+            places.push_back(touches[k].onB);
+            separations.push_back(touches[k].distance);
+        }
+        for (const size_t k : outlineOf(places, separations, touches[first].normal, kFlat * size)) kept.push_back(alike[k]);
+    }
+    touches = std::move(kept);
+}
+
 // One search: the bodies where they are expected, and how far they may come.
 class Search {
   public:
@@ -216,25 +241,53 @@ class Search {
         }
         const btCollisionObject& of = *bodies_[a].object;
         filter(touches, size_[a], bodies_[a].ball.w > 0);
+        if (!(bodies_[a].ball.w > 0)) leaveOutline(touches, size_[a]);
         for (const size_t k : chosen(touches)) {
             const Touch& t = touches[k];
             BodyContact c = contact(a, t);
             c.onB = t.onB;
             c.normal = t.normal;
-            c.velocityB = solid.velocity + glm::cross(solid.spin, t.onB - originOf(solid));
+            c.velocityB = solid.velocity;
+            c.spinB = solid.spin;
+            c.centreB = originOf(solid);
+            c.secondsB = static_cast<float>(solid.seconds);
             c.friction = of.getFriction() * solid.object->getFriction();
             c.restitution = of.getRestitution() * solid.object->getRestitution();
             found_->push_back(c);
         }
     }
-    // `a` moves.
+    // Those whose balls may come near each other, the first before the second: by a sweep along the axis along which they lie farthest apart.
+    std::vector<std::pair<size_t, size_t>> nearPairs() const {
+        const size_t count = bodies_.size();
+        Bounds all;
+        for (const vec4& ball : balls_) all.add(vec3(ball));
+        const vec3 size = all.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const auto reachOf = [&](size_t k) { return balls_[k].w + (1 + kNear) * size_[k]; };
+        std::vector<size_t> order(count);
+        std::iota(order.begin(), order.end(), size_t{0});
+        std::ranges::sort(order, {}, [&](size_t k) { return balls_[k][axis] - reachOf(k); });
+        std::vector<std::pair<size_t, size_t>> pairs;
+        std::vector<size_t> open;  // that reach as far as the sweep is
+        open.reserve(count);
+        for (const size_t k : order) {
+            const float low = balls_[k][axis] - reachOf(k);
+            std::erase_if(open, [&](size_t other) { return balls_[other][axis] + reachOf(other) < low; });
+            for (const size_t other : open)
+                if (glm::length(vec3(balls_[k]) - vec3(balls_[other])) <= reachOf(k) + reachOf(other))
+                    pairs.emplace_back(std::min(k, other), std::max(k, other));
+            open.push_back(k);
+        }
+        std::ranges::sort(pairs);
+        return pairs;
+    }
+    // Two of nearPairs; `a` moves.
     void meet(size_t a, size_t b) {
         if (bodies_[a].ball.w <= 0 && bodies_[b].ball.w > 0 && bodies_[b].moves) std::swap(a, b);  // the ball first
-        const float reach = balls_[a].w + balls_[b].w + (1 + kNear) * (size_[a] + size_[b]);
-        if (glm::length(vec3(balls_[a]) - vec3(balls_[b])) > reach) return;
         const float near = kBand * std::min(size_[a], size_[b]) + glm::length(states_[a].velocity - states_[b].velocity) * seconds_;
         std::vector<Touch> touches = between(bodies_[a], *bodies_[b].hull, *bodies_[b].object, near, allowed_[a] + allowed_[b]);
         filter(touches, std::min(size_[a], size_[b]), bodies_[a].ball.w > 0);
+        if (!(bodies_[a].ball.w > 0)) leaveOutline(touches, std::min(size_[a], size_[b]));
         const btCollisionObject &one = *bodies_[a].object, &other = *bodies_[b].object;
         for (const size_t k : chosen(touches)) {
             const Touch& t = touches[k];
@@ -330,9 +383,10 @@ void findContacts(btCollisionWorld& world, std::span<const ContactBody> bodies, 
         const LayersParams layers = layersOf(*bodies[a].object);
         for (const ContactSolid& solid : solids)
             if (const LayersParams own = layersOf(*solid.object); own == kBoxLayers || own.meet(layers)) search.meet(a, solid);
-        for (size_t b = 0; b < bodies.size(); ++b)
-            if ((b > a || (b < a && !bodies[b].moves)) && layers.meet(layersOf(*bodies[b].object))) search.meet(a, b);
     }
+    for (const auto& [a, b] : search.nearPairs())
+        if ((bodies[a].moves || bodies[b].moves) && layersOf(*bodies[a].object).meet(layersOf(*bodies[b].object)))
+            search.meet(bodies[a].moves ? a : b, bodies[a].moves ? b : a);
 }
 
 }  // namespace rivulet

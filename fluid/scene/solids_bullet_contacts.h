@@ -39,6 +39,7 @@ struct ContactBody {
 struct ContactSolid {
     btCollisionObject* object = nullptr;  // where it is when the frame begins
     vec3 velocity{0.0F}, spin{0.0F};      // m/s, of its origin; rad/s
+    double seconds = 0;                   // that it moves so
 };
 
 // Adds to `found`, as BodyHost::contacts. At most 8 of a pair.

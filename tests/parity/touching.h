@@ -19,6 +19,8 @@ struct Touching {
     std::vector<Body> bodies;
     std::vector<BodyContact> contacts;
     StepParams step{};
+    float passed = 0;             // s, of the frame
+    std::vector<BodyLoad> loads;  // of each body, or none
     std::vector<DeviceBody> run(Device& device) const {
         const Define group{"LOCAL_SIZE", std::to_string(TOUCHING_GROUP)};
         const Result<Kernel> kernel = device.kernel("fluid/solids/advance_touching", std::span(&group, 1));
@@ -46,13 +48,18 @@ struct Touching {
             if (!items.empty()) device.writeAll<T>(*buffer, items);
             return std::move(*buffer);
         };
-        const Buffer loads = upload(std::vector<LoadRow>(rows.size() * LOAD_THREADS)), by = upload(motions), moved = upload(rows),
+        std::vector<LoadRow> loadRows(rows.size() * LOAD_THREADS);
+        for (size_t k = 0; k < loads.size(); ++k) {
+            loadRows[k * LOAD_THREADS] = {vec4(vec3(loads[k].force), 0.0F), vec4(vec3(loads[k].torque), 0.0F)};
+            motions[k].samples = 1;
+        }
+        const Buffer onBodies = upload(loadRows), by = upload(motions), moved = upload(rows),
                      pairs = upload(made.pairs), contactRows = upload(made.contacts), colours = upload(made.colours),
                      states = upload(std::vector<ContactState>(made.contacts.size())),
                      before = upload(std::vector<ContactState>(made.contacts.size()));
         StepParams s = step;
-        s.force = vec4(0, 1, static_cast<float>(made.colourCount()), 0);
-        device.run(*kernel, s, {&loads, &by, &moved, &pairs, &contactRows, &colours, &states, &before}, TOUCHING_GROUP);
+        s.force = vec4(passed, 1, static_cast<float>(made.colourCount()), 1);
+        device.run(*kernel, s, {&onBodies, &by, &moved, &pairs, &contactRows, &colours, &states, &before}, TOUCHING_GROUP);
         return device.readAll<DeviceBody>(moved, rows.size());
     }
 };

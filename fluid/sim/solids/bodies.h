@@ -61,7 +61,9 @@ struct BodyContact {
     vec3 onA{0.0F}, onB{0.0F};
     float radiusA = 0, radiusB = 0;          // m
     vec3 normal{0.0F};                       // unit, from b to a; in the frame of b, of a solid in the world
-    vec3 velocityB{0.0F};                    // m/s, of a solid's point
+    // Of a solid that moves in the frame: m/s and rad/s, as it turns about a point (m, in the world, when the frame begins); s, how long.
+    vec3 velocityB{0.0F}, spinB{0.0F}, centreB{0.0F};
+    float secondsB = 0;
     float friction = 0.5F, restitution = 0;  // Coulomb; 0 to 1
 };
 

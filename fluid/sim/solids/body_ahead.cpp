@@ -26,7 +26,8 @@ constexpr float kSame = 0.5F;  // spacings: a contact that has moved no further 
 // Of a spacing, how far off a body is shown at most, but for the first frames after a blow; s, how long its states are then waited for.
 constexpr float kShown = 0.1F;
 constexpr double kRestless = 0.5;
-constexpr double kLatest = 3;  // frames until states arrive
+constexpr double kLatest = 3;     // frames until states arrive
+constexpr double kCrowded = 0.5;  // s: where too many touch, how long nothing is searched
 
 }  // namespace
 
@@ -129,28 +130,29 @@ bool BodyPasses::findContacts(const vec3& gravity, double seconds) {
     std::vector<bool> moves;
     moves.reserve(bodies_.size());
     for (const Body& b : bodies_) moves.push_back(b.shape.mass > 0);
-    touching_ = contactRows(found, moves, ahead_ ? touching_ : ContactRows(), kSame * spacing_);
-    return touching_.touching <= MOST_TOUCHING && uploadContacts();
+    touching_ = contactRows(found, moves, late_->moved, kSame * spacing_);
+    if (touching_.touching <= MOST_TOUCHING) return uploadContacts();
+    late_->crowdedUntil = time_ + kCrowded;
+    return false;
 }
 
 bool BodyPasses::uploadContacts() {
     if (touching_.touching == 0) return true;
     const auto holds = [&](Buffer& buffer, size_t bytes) {
-        if (buffer.bytes() >= bytes) return true;
+        if (buffer.bytes() >= bytes && buffer.bytes() > 0) return true;
         Result<Buffer> made = device_->allocate(2 * bytes);
         if (!made) device_->forgiveFull();  // the host moves the bodies then
         if (!made) return false;
         buffer = std::move(*made);
+        device_->fill(buffer, 0);
         return true;
     };
-    const size_t states = touching_.contacts.size() * sizeof(ContactState);
-    if (contactStates_.bytes() < states || contactsBefore_.bytes() < states)
-        for (ContactRow& row : touching_.contacts) row.before = NO_CONTACT;  // their impulses are in what is replaced here
-    if (!holds(contactStates_, states) || !holds(contactsBefore_, states) ||
+    // The first substep swaps the two: until then contactStates_ has the states of the frame before.
+    if (!holds(contactStates_, late_->moved.contacts.size() * sizeof(ContactState)) ||
+        !holds(contactsBefore_, touching_.contacts.size() * sizeof(ContactState)) ||
         !holds(contacts_, touching_.contacts.size() * sizeof(ContactRow)) || !holds(pairs_, touching_.pairs.size() * sizeof(ContactPair)) ||
         !holds(colours_, touching_.colours.size() * sizeof(uint32_t)))
         return false;
-    std::swap(contactStates_, contactsBefore_);
     device_->writeAll<ContactPair>(pairs_, touching_.pairs);
     device_->writeAll<ContactRow>(contacts_, touching_.contacts);
     device_->writeAll<uint32_t>(colours_, touching_.colours);
@@ -161,7 +163,14 @@ void BodyPasses::moveOnDevice(const StepParams& step) {
     StepParams s = step;
     const bool first = std::exchange(frameBegins_, false);
     if (first) frameBegin_ = time_;
-    s.force = vec4(static_cast<float>(time_ - frameBegin_), first ? 1.0F : 0.0F, static_cast<float>(touching_.colourCount()), 0.0F);
+    // Impulses are forces times the length of a step.
+    const double last = std::exchange(late_->step, double{step.dt});
+    s.force = vec4(static_cast<float>(time_ - frameBegin_), first ? 1.0F : 0.0F, static_cast<float>(touching_.colourCount()),
+                   last > 0 ? static_cast<float>(double{step.dt} / last) : 1.0F);
+    if (first) {
+        if (touching_.touching > 0) std::swap(contactStates_, contactsBefore_);
+        late_->moved = touching_;
+    }
     if (touching_.touching > 0)
         device_->run(touch_, s, {&rows_, &motions_, &deviceBodies_, &pairs_, &contacts_, &colours_, &contactStates_, &contactsBefore_},
                      TOUCHING_GROUP);
@@ -194,9 +203,10 @@ void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
         late_->forecast.frame(k, (faults & BODY_STRAYED) != 0);
         if ((faults & BODY_STRAYED) != 0) ++strays_;
     }
-    if (exact || !findContacts(gravity, seconds)) {
+    if (exact || time_ < late_->crowdedUntil || !findContacts(gravity, seconds)) {
         settle();
         touching_ = {};
+        late_->moved = {};
         ahead_ = false;
         return;
     }

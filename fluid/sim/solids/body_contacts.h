@@ -21,8 +21,12 @@ struct ContactRows {
 };
 
 // `before`: those of the frame before, empty if there were none. `moves`: of each body, whether it has mass. A contact of the same two
-// bodies that was within `near` (m) is the same; of several, the nearest.
+// bodies that was within `near` (m) is the same; of several, the nearest. The nearest takes over the impulses of those that are gone.
 ContactRows contactRows(std::span<const BodyContact> contacts, const std::vector<bool>& moves, const ContactRows& before, float near);
+
+// Of contacts with one normal those that imply the others: the corners of what they span, without ones that stand out by less than `flat`
+// (m). All of them where the separations (m) are not those of two planes, within `flat`. Returns their places, in order.
+std::vector<size_t> outlineOf(std::span<const vec3> places, std::span<const float> separations, const vec3& normal, float flat);
 
 // At most `most` of a pair's contacts: the deepest, and of the others those that are farthest from the ones chosen. `separations`, m.
 // Returns their places, the deepest first.

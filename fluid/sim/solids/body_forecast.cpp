@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kStep = 1.0 / 120;  // s, of a prediction with contacts, at most
 constexpr float kWay = 0.5F;         // of a body's reach in such a step, at most
-constexpr double kMostSteps = 16;    // of each of the two parts of a prediction
+constexpr double kMostSteps = 8;      // of each of the two parts of a prediction
+constexpr double kMostMoves = 1024;   // of bodies, in the steps of a part
 
 quat turnedFor(const BodyState& s, float seconds) {
     const float rate = glm::length(s.spin);
@@ -72,7 +73,8 @@ void BodyForecast::expect(const BodyHost* host, const vec3& gravity, double now,
             const float way = seconds * (glm::length(path_.back().states[k].velocity) + seconds * glm::length(acceleration_[k]));
             if (mass_[k] > 0 && reach_[k] > 0) steps = std::max(steps, std::ceil(double{way / (kWay * reach_[k])}));
         }
-        const int count = static_cast<int>(std::clamp(steps, 2.0, kMostSteps));
+        const double most = std::clamp(kMostMoves / static_cast<double>(states_.size()), 2.0, kMostSteps);
+        const int count = static_cast<int>(std::clamp(steps, 2.0, most));
         for (int n = 0; n < count; ++n) {
             Moment next{n + 1 == count ? until : from + span * (n + 1) / count, path_.back().states};
             const double before = path_.back().time;

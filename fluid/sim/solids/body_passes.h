@@ -125,6 +125,9 @@ class BodyPasses {
         float most = 0;                // m, how far a body may be from where it is expected
         std::vector<float> reach;      // m, of each body
         double restlessUntil = -1;     // s: until then they may move otherwise than expected
+        double crowdedUntil = -1;      // s: until then more may touch than a GPU moves
+        ContactRows moved = {};        // the contacts whose states contactStates_ has: of the last substep
+        double step = 0;               // s, that substep's length
         // They were expected there at `time`, and are there: `scale` times as far away as they would be in a picture.
         void compare(std::span<const BodyState> expected, std::span<const BodyState> states, double time, float scale);
     };

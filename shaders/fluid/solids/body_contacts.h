@@ -1,9 +1,10 @@
 // Sequential impulses (Catto 2005, "Iterative Dynamics with Temporal Coherence"): a contact at a time, an impulse changes the velocities of
 // its two bodies so that its points separate, or approach no faster than their distance allows within the substep. The sum of its impulses,
-// not each one, must push and stay within the friction cone. The sums of one substep start the next. Overlaps are undone by velocities that
-// move the bodies once and are taken back afterwards, so that they add no energy ("relax", Catto 2024, "Solver2D").
-CONSTANT(float, PUSH_RATE, 10.0f);    // 1/s: how fast an overlap is undone
-CONSTANT(float, CALM_RATE, 2.0f);     // 1/s: the same for a small one; faster, with few iterations, stacks rock
+// not each one, must push and stay within the friction cone. The sums of one substep start the next. Overlaps are undone by moving the
+// bodies, and not by velocities (nonlinear projection: Catto 2014, "Understanding Constraints"): these would add energy, and piles would
+// rock.
+CONSTANT(float, PUSH_RATE, 15.0f);    // 1/s: how fast an overlap is undone; at 100/s, with few iterations, piles rock
+CONSTANT(float, PUSH_SHARE, 0.5f);    // of an overlap: not more of it in a substep
 CONSTANT(float, PUSH_MOST, 1.0f);     // m/s: no overlap is undone faster
 CONSTANT(float, BOUNCE_FROM, 0.2f);   // m/s: slower contacts do not bounce, as in Bullet
 CONSTANT(float, MOST_PUSH, 1.0e36f);  // of a sum of squares: an impulse beyond it, or NaN, is none
@@ -44,20 +45,25 @@ FN float massAlong(vec3 direction, vec3 armA, vec3 armB, vec3 turnA, vec3 turnB,
     return k > 0.0f ? 1.0f / k : 0.0f;
 }
 
-// The impulse of a contact in the next iteration. Points that are apart may meet at the end of the substep. An overlap is undone (`undo`),
-// or only not increased, and then points that have not met are left to the next substep. `small`: m, an overlap that is small: what gravity
-// moves a body in a substep.
-FN vec3 nextImpulse(PairSpeeds m, ContactState c, float friction, float seconds, float small, bool undo) {
-    float separation = c.armB.w;
-    if (!undo && separation > 0.0f && !(c.impulse.x > 0.0f)) return vec3(0.0f, 0.0f, 0.0f);
+// m/s: the speed at which two points meet that approach at `speed` before the substep and are `separation` apart. `pull`: m/s^2, of
+// gravity, of one against the other. As the energy that symplectic Euler keeps has it, so that heights are right at any step.
+FN float meetingSpeed(float speed, float separation, float pull, float seconds) {
+    if (!(speed > 0.0f)) return 0.0f;
+    float square = speed * (speed + pull * seconds) + 2.0f * pull * separation;
+    return square > 0.0f ? sqrt(square) : 0.0f;
+}
+
+// m/s: at which they part again, by the same energy.
+FN float partingSpeed(float meeting, float restitution, float pull, float seconds) {
+    float rise = 0.5f * pull * seconds, speed = restitution * meeting;
+    return rise + sqrt(rise * rise + speed * speed);
+}
+
+// The impulse of a contact in the next iteration. `least`: m/s, at which its points are to part, negative where they may approach.
+FN vec3 nextImpulse(PairSpeeds m, ContactState c, float friction, float least) {
     vec3 slip = slipOf(m, c);
-    float most = separation / seconds;  // m/s, of approach
-    if (!(separation > 0.0f)) {
-        float over = min(separation + small, 0.0f);
-        most = undo ? max(PUSH_RATE * over + CALM_RATE * (separation - over), -PUSH_MOST) : 0.0f;
-    }
     vec3 next;
-    next.x = max(c.impulse.x - c.normal.w * (dot(slip, c.normal.xyz) + most), 0.0f);
+    next.x = max(c.impulse.x - c.normal.w * (dot(slip, c.normal.xyz) - least), 0.0f);
     next.y = c.impulse.y - c.along.w * dot(slip, c.along.xyz);
     next.z = c.impulse.z - c.across.w * dot(slip, c.across.xyz);
     // Coulomb: the friction of two tangents together.

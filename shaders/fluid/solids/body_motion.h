@@ -78,3 +78,15 @@ FN LoadNow loadOf(GLOBAL(LoadRow, rows) uint b, float samples, float added, floa
     l.pendingAngular = vec4(angular * (1.0f - share), 0.0f);
     return l;
 }
+
+// The body with this load noted. `first`: in a frame's first substep.
+FN DeviceBody loaded(DeviceBody body, LoadNow l, float seconds, bool first) {
+    body.force = l.impulse * (1.0f / seconds);
+    body.torque = l.angular * (1.0f / seconds);
+    body.pendingImpulse = l.pending;
+    body.pendingAngularImpulse = l.pendingAngular;
+    body.pushed = first ? l.impulse : body.pushed + l.impulse;
+    body.pushedAngular = first ? l.angular : body.pushedAngular + l.angular;
+    body.faults = first ? 0u : body.faults;
+    return body;
+}

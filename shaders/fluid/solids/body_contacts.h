@@ -7,6 +7,7 @@ CONSTANT(float, PUSH_RATE, 15.0f);    // 1/s: how fast an overlap is undone; at 
 CONSTANT(float, PUSH_SHARE, 0.5f);    // of an overlap: not more of it in a substep
 CONSTANT(float, PUSH_MOST, 1.0f);     // m/s: no overlap is undone faster
 CONSTANT(float, BOUNCE_FROM, 0.2f);   // m/s: slower contacts do not bounce, as in Bullet
+CONSTANT(float, MEETS, 0.01f);        // of the way in a substep: surfaces that come so near meet
 CONSTANT(float, MOST_PUSH, 1.0e36f);  // of a sum of squares: an impulse beyond it, or NaN, is none
 
 // Velocities of the bodies of a pair.

@@ -42,7 +42,7 @@ struct BodyState {
 struct Body {
     BodyShape shape;
     BodyState state;         // at t = 0
-    bool meetsWater = true;  // false: the water passes through it, its load is 0, and the host alone moves it
+    bool meetsWater = true;  // false: the water passes through it, and its load is 0
 };
 
 // What the fluid does to a body in a substep: force, N, and torque about the centre of mass, N m, in the world's axes.

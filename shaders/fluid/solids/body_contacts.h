@@ -60,19 +60,23 @@ FN float partingSpeed(float meeting, float restitution, float pull, float second
     return rise + sqrt(rise * rise + speed * speed);
 }
 
-// The impulse of a contact in the next iteration. `least`: m/s, at which its points are to part, negative where they may approach.
-FN vec3 nextImpulse(PairSpeeds m, ContactState c, float friction, float least) {
+// The impulse of a contact in the next iteration: how it pushes, or its friction. `least`: m/s, at which its points are to part, negative
+// where they may approach.
+FN vec3 nextImpulse(PairSpeeds m, ContactState c, float friction, float least, bool pushes) {
     vec3 slip = slipOf(m, c);
-    vec3 next;
-    next.x = max(c.impulse.x - c.normal.w * (dot(slip, c.normal.xyz) - least), 0.0f);
-    next.y = c.impulse.y - c.along.w * dot(slip, c.along.xyz);
-    next.z = c.impulse.z - c.across.w * dot(slip, c.across.xyz);
-    // Coulomb: the friction of two tangents together.
-    float size = sqrt(next.y * next.y + next.z * next.z);
-    if (size > friction * next.x) {
-        float kept = friction * next.x / size;
-        next.y = next.y * kept;
-        next.z = next.z * kept;
+    vec3 next = c.impulse.xyz;
+    if (pushes) {
+        next.x = max(next.x - c.normal.w * (dot(slip, c.normal.xyz) - least), 0.0f);
+    } else {
+        next.y = next.y - c.along.w * dot(slip, c.along.xyz);
+        next.z = next.z - c.across.w * dot(slip, c.across.xyz);
+        // Coulomb: the friction of two tangents together.
+        float size = sqrt(next.y * next.y + next.z * next.z);
+        if (size > friction * next.x) {
+            float kept = friction * next.x / size;
+            next.y = next.y * kept;
+            next.z = next.z * kept;
+        }
     }
     if (!SQUARE_BELOW(dot(next, next), MOST_PUSH)) next = vec3(0.0f, 0.0f, 0.0f);
     return next;

@@ -256,7 +256,8 @@ class Search {
             found_->push_back(c);
         }
     }
-    // Those whose balls may come near each other, the first before the second: by a sweep along the axis along which they lie farthest apart.
+    // Those whose balls may come near each other, the first before the second: by a sweep along the axis along which they lie farthest
+    // apart.
     std::vector<std::pair<size_t, size_t>> nearPairs() const {
         const size_t count = bodies_.size();
         Bounds all;

@@ -133,7 +133,8 @@ TEST_P(AdvanceTouching, ABoxBouncesByTheLaw) {
                     for (const vec3& p : own) arm += dvec3(turned * p) / static_cast<double>(corners);
                     const dmat3 r = glm::mat3_cast(dquat(turned));
                     const dvec3 up(0, 1, 0), turn = r * ((glm::transpose(r) * glm::cross(arm, up)) / dvec3(b.shape.inertia));
-                    const double impulse = double{speed} * (1 + double{e}) / (1 / double{b.shape.mass} + glm::dot(up, glm::cross(turn, arm)));
+                    const double impulse =
+                        double{speed} * (1 + double{e}) / (1 / double{b.shape.mass} + glm::dot(up, glm::cross(turn, arm)));
                     laws.push_back({impulse / double{b.shape.mass} - double{speed}, glm::length(turn) * impulse});
                     t.bodies.push_back(b);
                 }

@@ -53,8 +53,8 @@ struct Touching {
             loadRows[k * LOAD_THREADS] = {vec4(vec3(loads[k].force), 0.0F), vec4(vec3(loads[k].torque), 0.0F)};
             motions[k].samples = 1;
         }
-        const Buffer onBodies = upload(loadRows), by = upload(motions), moved = upload(rows),
-                     pairs = upload(made.pairs), contactRows = upload(made.contacts), colours = upload(made.colours),
+        const Buffer onBodies = upload(loadRows), by = upload(motions), moved = upload(rows), pairs = upload(made.pairs),
+                     contactRows = upload(made.contacts), colours = upload(made.colours),
                      states = upload(std::vector<ContactState>(made.contacts.size())),
                      before = upload(std::vector<ContactState>(made.contacts.size()));
         StepParams s = step;

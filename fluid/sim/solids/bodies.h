@@ -59,8 +59,8 @@ struct BodyContact {
     // m: in the frame of a; in that of b, of a solid in the world when the frame begins. With a radius it is the centre of a ball, and the
     // surface is so far from it, whichever way the ball turns.
     vec3 onA{0.0F}, onB{0.0F};
-    float radiusA = 0, radiusB = 0;          // m
-    vec3 normal{0.0F};                       // unit, from b to a; in the frame of b, of a solid in the world
+    float radiusA = 0, radiusB = 0;  // m
+    vec3 normal{0.0F};               // unit, from b to a; in the frame of b, of a solid in the world
     // Of a solid that moves in the frame: m/s and rad/s, as it turns about a point (m, in the world, when the frame begins); s, how long.
     vec3 velocityB{0.0F}, spinB{0.0F}, centreB{0.0F};
     float secondsB = 0;

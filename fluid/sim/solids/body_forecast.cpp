@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kStep = 1.0 / 120;  // s, of a prediction with contacts, at most
 constexpr float kWay = 0.5F;         // of a body's reach in such a step, at most
-constexpr double kMostSteps = 8;      // of each of the two parts of a prediction
-constexpr double kMostMoves = 1024;   // of bodies, in the steps of a part
+constexpr double kMostSteps = 8;     // of each of the two parts of a prediction
+constexpr double kMostMoves = 1024;  // of bodies, in the steps of a part
 
 quat turnedFor(const BodyState& s, float seconds) {
     const float rate = glm::length(s.spin);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -32,6 +33,7 @@ struct Scenario {
     std::vector<Pose> poses;
     vec3 gravity{0, -static_cast<float>(kGravity), 0};
     float step = 1.0F / 240;  // s
+    uint32_t poison = 0;      // of LateDevice
     void add(const Body& body, const BodyForm& form) {
         bodies.push_back(body);
         bodies.back().meetsWater = false;
@@ -71,6 +73,7 @@ class Rig {
         }
         gpu_ = std::move(*gpu);
         late = std::make_unique<LateDevice>(*gpu_.device, setup.bodies.size());
+        late->poison = setup.poison;
         FluidParams p;
         p.method = "pbf";
         p.spacing = 0.05F;

@@ -1,6 +1,7 @@
 // LateDevice: a GPU that is two frames behind, whatever the speed of the machine: what is read later arrives that much later.
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -23,7 +24,11 @@ class LateDevice final : public Device {
     using Device::kernel;
     Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override { return of_.kernel(path, defines); }
     std::vector<std::string> kernels() const override { return of_.kernels(); }
-    Result<Buffer> allocate(size_t bytes) override { return of_.allocate(bytes); }
+    Result<Buffer> allocate(size_t bytes) override {
+        Result<Buffer> made = of_.allocate(bytes);
+        if (made && poison != 0) of_.fill(*made, poison);
+        return made;
+    }
     void release(uint64_t handle, size_t bytes) override { of_.release(handle, bytes); }
     void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override { of_.write(to, bytes, offset); }
     void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override {
@@ -67,6 +72,7 @@ class LateDevice final : public Device {
         ++frame_;
     }
 
+    uint32_t poison = 0;                        // fills new memory with this word
     size_t reads = 0;                           // that wait
     std::vector<std::vector<DeviceBody>> rows;  // of each frame, as they were then
 

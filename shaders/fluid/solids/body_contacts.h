@@ -1,7 +1,7 @@
 // Sequential impulses (Catto 2005, "Iterative Dynamics with Temporal Coherence"): a contact at a time, an impulse changes the velocities of
 // its two bodies so that its points separate, or approach no faster than their distance allows within the substep. The sum of its impulses,
 // not each one, must push and stay within the friction cone. The sums of one substep start the next. Overlaps are undone by moving the
-// bodies, and not by velocities (nonlinear projection: Catto 2014, "Understanding Constraints"): these would add energy, and piles would
+// bodies, and not by velocities (nonlinear Gauss-Seidel, as in Box2D 2): these would add energy, and piles would
 // rock.
 CONSTANT(float, PUSH_RATE, 15.0f);    // 1/s: how fast an overlap is undone; at 100/s, with few iterations, piles rock
 CONSTANT(float, PUSH_SHARE, 0.5f);    // of an overlap: not more of it in a substep

@@ -23,7 +23,7 @@ constexpr Part kParts[] = {
     {"moving meshes", "no collider moves or deforms", "fluid/solids/near_walls_moving|fluid/forces/wall_friction_moving", ""},
     {"floating bodies", "the scene has none",
      "fluid/solids/place_samples|fluid/solids/push_samples|fluid/solids/sum_loads|fluid/solids/advance_bodies|"
-     "fluid/solids/index_samples",
+     "fluid/solids/advance_touching|fluid/solids/index_samples",
      ""},
     {"masses and densities per particle", "there is one liquid and no body", "", "MATTER"},
     {"periodic axes", "no axis of the box is periodic", "fluid/world/wrap", "PERIODIC"},

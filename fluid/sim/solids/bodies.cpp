@@ -100,7 +100,7 @@ BodyHost FreeBodies::host() {
     h.self = this;
     h.remembersNothing = true;
     h.reset = [](void*, std::span<const BodyState>) {};
-    h.isFree = [](void*, std::span<const vec4>, double) { return true; };
+    h.contacts = [](void*, std::span<const BodyState>, std::span<const vec4>, double, std::vector<BodyContact>&) { return true; };
     h.passed = [](void*, double) {};
     h.added = [](void* self, uint32_t, const Body& body) { static_cast<FreeBodies*>(self)->add(body); };
     h.removed = [](void* self, uint32_t, size_t index) {

@@ -42,13 +42,29 @@ struct BodyState {
 struct Body {
     BodyShape shape;
     BodyState state;         // at t = 0
-    bool meetsWater = true;  // false: the water passes through it, its load is 0, and the host alone moves it
+    bool meetsWater = true;  // false: the water passes through it, and its load is 0
 };
 
 // What the fluid does to a body in a substep: force, N, and torque about the centre of mass, N m, in the world's axes.
 struct BodyLoad {
     dvec3 force{0.0}, torque{0.0};
     dvec3 pendingImpulse{0.0}, pendingAngularImpulse{0.0};  // N s, N m s: transferred in later substeps, see BodyLoads
+};
+
+// A contact that may act in a frame, between a body and another or a solid. Its points are those of the two surfaces that are nearest to
+// each other there; they may be apart.
+struct BodyContact {
+    static constexpr uint32_t kSolid = UINT32_MAX;  // a wall or solid that the host knows
+    uint32_t a = 0, b = kSolid;                     // places among the states
+    // m: in the frame of a; in that of b, of a solid in the world when the frame begins. With a radius it is the centre of a ball, and the
+    // surface is so far from it, whichever way the ball turns.
+    vec3 onA{0.0F}, onB{0.0F};
+    float radiusA = 0, radiusB = 0;  // m
+    vec3 normal{0.0F};               // unit, from b to a; in the frame of b, of a solid in the world
+    // Of a solid that moves in the frame: m/s and rad/s, as it turns about a point (m, in the world, when the frame begins); s, how long.
+    vec3 velocityB{0.0F}, spinB{0.0F}, centreB{0.0F};
+    float secondsB = 0;
+    float friction = 0.5F, restitution = 0;  // Coulomb; 0 to 1
 };
 
 // Moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither. Loads and states are those
@@ -72,13 +88,18 @@ struct BodyHost {
     // body is the last of the next states. `index`: of the removed one among the states until now. If one throws, nothing changes.
     void (*added)(void* self, uint32_t id, const Body& body) = nullptr;
     void (*removed)(void* self, uint32_t id, size_t index) = nullptr;
-    // On a GPU a step waits for the loads before each call of advance. With these two functions (both, or neither) it does not while bodies
-    // move freely: then the GPU moves them as FreeBodies does, and the host learns of it later. isFree: true if no body is held
-    // by the host or can touch anything but fluid in the next `seconds`, while its centre of mass stays in its ball (xyz m, w m, the
-    // radius). Then instead of advance, `passed` is called for each substep. isFree is called once a frame, and again with other balls
-    // where it has said no; on the cpu never.
-    bool (*isFree)(void* self, std::span<const vec4> balls, double seconds) = nullptr;
+    // On a GPU a step waits for the loads before each call of advance. With these two functions (both, or neither) it does not: the GPU
+    // moves the bodies, and the host learns of it some frames late. contacts is called once a frame; on the cpu never. It adds to `found`
+    // all contacts that may act in the next `seconds`, while the bodies are about in `states` and their centres of mass stay in their balls
+    // (xyz m, w m, the radius). No contacts: they move as FreeBodies does it. False: only the host can move them in this frame, for
+    // instance since it holds one. After true, `passed` is called for each substep, instead of advance.
+    bool (*contacts)(void* self, std::span<const BodyState> states, std::span<const vec4> balls, double seconds,
+                     std::vector<BodyContact>& found) = nullptr;
     void (*passed)(void* self, double seconds) = nullptr;
+    // May be null; then bodies are expected to move freely. As advance, from `from` (s, before now where negative) on, without an effect on
+    // later calls: where bodies will be under loads as they lately were.
+    void (*predict)(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double from, double seconds,
+                    std::span<BodyState> states) = nullptr;
 };
 
 // A host for worlds where bodies touch nothing but fluid: rigid motion, symplectic Euler, momentum and angular momentum kept.

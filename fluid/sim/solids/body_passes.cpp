@@ -72,15 +72,15 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         return badInput("the host of the bodies has one of the functions advance and reset: give it both, or none");
     if ((host.added == nullptr) != (host.removed == nullptr))
         return badInput("the host of the bodies has one of the functions added and removed: give it both, or none");
-    if ((host.isFree == nullptr) != (host.passed == nullptr))
-        return badInput("the host of the bodies has one of the functions isFree and passed: give it both, or none");
+    if ((host.contacts == nullptr) != (host.passed == nullptr))
+        return badInput("the host of the bodies has one of the functions contacts and passed: give it both, or none");
     b.host_ = host;
     if (host.advance == nullptr) {
         b.free_ = std::make_shared<FreeBodies>(bodies);
         b.host_ = b.free_->host();
     }
     b.spacing_ = params.spacing;
-    b.mayBeAhead_ = device.backend() != Backend::cpu && b.host_.isFree != nullptr;
+    b.mayBeAhead_ = device.backend() != Backend::cpu && b.host_.contacts != nullptr;
     if (bodies.empty() && b.sampleCount_ == 0) return b;  // only bodies that the water does not meet can be added
     b.sampleCount_ = std::max(b.sampleCount_, 1U);        // what follows has room for them
     b.friction_ = methodOf(params).doesViscosity;
@@ -109,6 +109,10 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         Result<Kernel> found = device.kernel("fluid/solids/advance_bodies");
         if (!found) return found.error();
         b.advance_ = *found;
+        const Define group{"LOCAL_SIZE", std::to_string(TOUCHING_GROUP)};
+        Result<Kernel> touch = device.kernel("fluid/solids/advance_touching", std::span(&group, 1));
+        if (!touch) return touch.error();
+        b.touch_ = *touch;
     }
     return b;
 }
@@ -360,19 +364,19 @@ void BodyPasses::push(const StepParams& step, const NeighborGrid& grid, Particle
 
 void BodyPasses::advance(const StepParams& step, Particles& particles, double seconds) {
     if (!any()) return;
-    time_ += seconds;
     const size_t bodies = bodies_.size();
     const bool meets = anyMeets();
     if (meets)
         device_->run(sumLoads_, step, {&slotOf_, &particles.acceleration, &wet_, &arm_, &deviceBodies_, &rows_},
                      static_cast<uint32_t>(bodies) * LOAD_THREADS);
     if (ahead_) {
-        device_->run(advance_, step, {&rows_, &motions_, &deviceBodies_}, static_cast<uint32_t>(bodies));
-        settled_ = false;
+        moveOnDevice(step);
         host_.passed(host_.self, seconds);
+        time_ += seconds;
         states_ = late_->forecast.at(time_);
         return;
     }
+    time_ += seconds;
     if (meets && device_->backend() != Backend::cpu) ++waits_;
     const std::vector<LoadRow> rows = meets ? device_->readAll<LoadRow>(rows_, bodies * LOAD_THREADS) : std::vector<LoadRow>();
     for (size_t k = 0; k < bodies; ++k) {
@@ -392,7 +396,10 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
         loads_[k] = filter_.transfer(k, force, torque, wet / static_cast<double>(bodies_[k].shape.samples.size()), seconds);
     }
     if (late_)
-        for (size_t k = 0; k < bodies; ++k) pushed_[k] += loads_[k].force * seconds;
+        for (size_t k = 0; k < bodies; ++k) {
+            pushed_[k].force += loads_[k].force * seconds;
+            pushed_[k].torque += loads_[k].torque * seconds;
+        }
     std::vector<BodyState> next = states_;
     host_.advance(host_.self, loads_, vec3(step.gravity), seconds, next);
     for (size_t k = 0; k < bodies; ++k) {

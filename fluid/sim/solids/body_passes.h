@@ -9,6 +9,7 @@
 #include "engine/compute/device.h"
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/solids/bodies.h"
+#include "fluid/sim/solids/body_contacts.h"
 #include "fluid/sim/solids/body_forecast.h"
 #include "fluid/sim/solids/body_states.h"
 #include "fluid/sim/world/particles.h"
@@ -73,8 +74,8 @@ class BodyPasses {
         const Buffer *slotOf, *own, *arm, *bodies;
     };
     Samples samples() const { return {&slotOf_, &own_, &arm_, &deviceBodies_}; }
-    // A frame of up to `seconds` begins. On a GPU it decides whether the GPU moves the bodies (BodyHost::isFree); `exact`: not, since
-    // something else needs their states in each substep. Waits once if only their exact states can tell.
+    // A frame of up to `seconds` begins. On a GPU it finds the contacts (BodyHost::contacts) with which the GPU moves the bodies, and does
+    // not wait; `exact`: the GPU does not, since something else needs their states in each substep.
     void beginFrame(const vec3& gravity, double seconds, bool exact);
     // Sums the forces and moves the bodies: on the GPU, or it waits for the forces (some KB, one round trip) and calls the host.
     void advance(const StepParams& step, Particles& particles, double seconds);
@@ -124,9 +125,16 @@ class BodyPasses {
         BodyForecast forecast;
         std::vector<uint32_t> faults;  // of each body, that arrived since they were last looked at
         BodyStates states;
+        double crowdedUntil = -1;  // s: until then more may touch than a GPU moves
+        ContactRows moved = {};    // the contacts whose states contactStates_ has: of the last substep
+        double step = 0;           // s, that substep's length
     };
     void writeStates();  // to the device
     void writeMotions(std::span<const vec4> balls);
+    // The contacts of a frame; false: only the host can move the bodies, or there is no memory for them.
+    bool findContacts(const vec3& gravity, double seconds);
+    bool uploadContacts();
+    void moveOnDevice(const StepParams& step);    // by a substep
     void stay();                                  // the host moves the bodies from states() on
     void take(std::span<const DeviceBody> rows);  // the states and loads there
 
@@ -149,15 +157,19 @@ class BodyPasses {
     std::vector<vec4> ownRows_, matterRows_;  // of own_; matter()
     size_t room_ = 0;                         // bodies that there is memory for
     Buffer own_, arm_, slotOf_, wet_, rows_, deviceBodies_, motions_;
-    Kernel place_, index_, wetSamples_, push_, sumLoads_, advance_;
+    Buffer pairs_, contacts_, colours_, contactStates_, contactsBefore_;  // of advance_touching
+    Kernel place_, index_, wetSamples_, push_, sumLoads_, advance_, touch_;
     std::vector<BodyMotion> motionRows_;
+    ContactRows touching_;  // of this frame
     // On a GPU: what is known of bodies that it moves. Replaced where reads in flight must no longer arrive.
     std::shared_ptr<Late> late_;
     bool mayBeAhead_ = false;              // a GPU, and a host that allows it
     bool ahead_ = false, settled_ = true;  // the GPU moves them; states_ and loads_ are exact nevertheless
     double time_ = 0;                      // s, moved so far
-    std::vector<dvec3> pushed_;            // N s, of each body by loads since pushedFrom_ (s), while the host moved them
+    std::vector<BodyLoad> pushed_;         // N s, N m s, of each body by loads since pushedFrom_ (s), while the host moved them
     double pushedFrom_ = 0;
+    double frameBegin_ = 0;  // s, of the last frame in which the GPU moved them
+    bool frameBegins_ = false;
     uint64_t waits_ = 0, strays_ = 0;
     bool friction_ = false;
     float spacing_ = 0;  // m, of the fluid

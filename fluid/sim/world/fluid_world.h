@@ -162,7 +162,7 @@ class FluidWorld {
     // error is 6 to 10 %. For the load on a wall use fluid.probes. Reads back and waits.
     std::vector<float> pressures() const;
     const std::vector<Pose>& poses() const;          // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
-    const std::vector<BodyState>& bodies() const;    // of the last substep; waits on a GPU that moves bodies (BodyHost::isFree)
+    const std::vector<BodyState>& bodies() const;    // of the last substep; waits on a GPU that moves bodies (BodyHost::contacts)
     const std::vector<BodyLoad>& bodyLoads() const;  // as bodies()
     // Without waiting: where bodies are expected now (exact where the host moves them); where they were at an earlier time(), if known.
     const std::vector<BodyState>& expectedBodies() const;

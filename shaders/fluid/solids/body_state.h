@@ -14,11 +14,13 @@ STRUCT(DeviceBody) {
     uint firstSample;  // index into all samples
     uint endSample;
     uint bodyCount;  // number of bodies
-    uint faults;     // BODY_STRAYED, BODY_MISLED: of advance_bodies since the host wrote 0
+    uint faults;     // BODY_STRAYED, BODY_MISLED: of this frame
     vec4 force;      // N, of the last substep; see BodyLoad
     vec4 torque;     // N m
     vec4 pendingImpulse;         // N s
     vec4 pendingAngularImpulse;  // N m s
+    vec4 pushed;                 // N s, of the loads of this frame so far
+    vec4 pushedAngular;          // N m s
 };
 CONSTANT(uint, BODY_STRAYED, 1u);  // its centre of mass left the ball of BodyMotion
 CONSTANT(uint, BODY_MISLED, 2u);   // its next state would not have been finite: it keeps the last one
@@ -28,14 +30,15 @@ STRUCT(BodyMotion) {
     float added;   // mass of the fluid moved along, over the body's
     float samples;  // 0: the water does not meet it
     uint bodyCount;
-    uint padding;
+    uint slot;  // its place in work-group memory of advance_touching, or NO_SLOT: it touches nothing in this frame
 };
+CONSTANT(uint, NO_SLOT, 0xffffffffu);
 STRUCT(LoadRow) {
     vec4 force;   // N, w: wet share of the surface, summed over samples
     vec4 torque;  // N m, about the centre of mass
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
-static_assert(sizeof(DeviceBody) == 144 && sizeof(BodyMotion) == 48 && sizeof(LoadRow) == 32);
+static_assert(sizeof(DeviceBody) == 176 && sizeof(BodyMotion) == 48 && sizeof(LoadRow) == 32);
 }  // namespace rivulet
 #include "shaders/common/lang_end.h"
 #endif

@@ -1,0 +1,393 @@
+#include "fluid/scene/solids_bullet_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wextra"
+#endif
+#include <BulletCollision/CollisionShapes/btConvexPolyhedron.h>
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btPolyhedralContactClipping.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+#include "fluid/sim/solids/body_contacts.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr size_t kMostOfPair = 8;
+constexpr float kNear = 0.02F;      // of a body's size: it may touch what is so near, however little it moves
+constexpr float kBand = 0.15F;      // of a body's size, beside what it moves in the frame: so near its parts are looked at
+constexpr float kSame = 1.0e-3F;    // of a body's size: points that are so near are one
+constexpr float kFlat = 5.0e-3F;    // of a body's size: a corner that stands out by less is none
+constexpr float kAlike = 0.99999F;  // cosine: normals of one plane
+constexpr float kOfFace = 0.9F;     // cosine between the normals of a triangle and of a point of it where a body overlaps it
+
+// Of a contact in the world: the points of both surfaces, the normal towards a, and the distance (negative where they overlap).
+struct Touch {
+    vec3 onA, onB, normal;
+    float distance;
+};
+
+// Faces of two shapes, clipped against each other. Bullet itself clips only shapes that overlap; of others it reports one point.
+class Clipped : public btDiscreteCollisionDetectorInterface::Result {
+  public:
+    // Nothing where a shape has no faces. `normal`: unit, from b to a.
+    static void add(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btVector3& normal, float within,
+                    std::vector<Touch>& touches) {
+        const btConvexPolyhedron *one = facesOf(a), *other = facesOf(b);
+        if (one == nullptr) return;
+        // The face of a that looks at b.
+        btScalar least = 1;
+        for (int k = 0; k < one->m_faces.size(); ++k) {
+            const btScalar* plane = one->m_faces[k].m_plane;
+            least = std::min(least, normal.dot(a.getWorldTransform().getBasis() * btVector3(plane[0], plane[1], plane[2])));
+        }
+        constexpr btScalar kFacing = -0.7F;  // else it is an edge or a corner that is nearest
+        if (!(least < kFacing)) return;
+        const float margins = marginOf(a) + marginOf(b);
+        Clipped result(-least, marginOf(a), marginOf(b), touches);
+        btVertexArray some, more;
+        if (other != nullptr) {
+            btPolyhedralContactClipping::clipHullAgainstHull(normal, *one, *other, a.getWorldTransform(), b.getWorldTransform(),
+                                                             -SIMD_INFINITY, within + margins, some, more, result);
+        } else if (b.getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
+            const auto& triangle = static_cast<const btTriangleShape&>(*b.getCollisionShape());
+            for (const btVector3& corner : triangle.m_vertices1) some.push_back(b.getWorldTransform() * corner);
+            btPolyhedralContactClipping::clipFaceAgainstHull(normal, *one, a.getWorldTransform(), some, more, -SIMD_INFINITY,
+                                                             within + margins, result);
+        }
+    }
+    void setShapeIdentifiersA(int, int) override {}
+    void setShapeIdentifiersB(int, int) override {}
+    void addContactPoint(const btVector3& normal, const btVector3& point, btScalar depth) override {
+        const vec3 n = fromBullet(normal), on = fromBullet(point);
+        const float distance = depth / cosine_;  // along the normal, and not to the face's plane
+        touches_->push_back({on + (distance - marginA_) * n, on + marginB_ * n, n, distance - marginA_ - marginB_});
+    }
+
+  private:
+    Clipped(float cosine, float marginA, float marginB, std::vector<Touch>& touches)
+        : cosine_(cosine), marginA_(marginA), marginB_(marginB), touches_(&touches) {}
+    static const btConvexPolyhedron* facesOf(const btCollisionObjectWrapper& of) {
+        const btCollisionShape& shape = *of.getCollisionShape();
+        if (!shape.isPolyhedral() || shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) return nullptr;
+        return static_cast<const btPolyhedralConvexShape&>(shape).getConvexPolyhedron();
+    }
+    static float marginOf(const btCollisionObjectWrapper& of) {
+        const btCollisionShape& shape = *of.getCollisionShape();
+        return shape.getShapeType() == BOX_SHAPE_PROXYTYPE ? 0 : shape.getMargin();  // the corners of a box have it
+    }
+    float cosine_, marginA_, marginB_;
+    std::vector<Touch>* touches_;
+};
+
+// Points that Bullet finds up to a distance. The two shapes may be exchanged in what it reports.
+class Closest : public btCollisionWorld::ContactResultCallback {
+  public:
+    Closest(const btCollisionObject& a, bool ball, float within, std::vector<Touch>& touches)
+        : a_(&a), ball_(ball), parts_(a.getCollisionShape()->isCompound()), touches_(&touches) {
+        m_closestDistanceThreshold = within;
+    }
+    btScalar addSingleResult(btManifoldPoint& p, const btCollisionObjectWrapper* first, int, int part,
+                             const btCollisionObjectWrapper* second, int, int otherPart) override {
+        if (p.m_distance1 > m_closestDistanceThreshold) return 0;
+        const vec3 one = fromBullet(p.m_positionWorldOnA), other = fromBullet(p.m_positionWorldOnB), n = fromBullet(p.m_normalWorldOnB);
+        if (!(glm::dot(n, n) > 0.5F)) return 0;
+        const bool same = first->getCollisionObject() == a_;
+        // Where they overlap, Bullet knows no direction out of a flat triangle: the corners do.
+        if (!ball_ && p.m_distance1 < 0 && std::abs(glm::dot(n, normalOf(same ? *second : *first, n))) < kOfFace) return 0;
+        touches_->push_back(same ? Touch{one, other, n, p.m_distance1} : Touch{other, one, -n, p.m_distance1});
+        if (parts_) return 0;
+        const Parts parts{first->getCollisionShape(), second->getCollisionShape(), part, otherPart};
+        if (parts == last_) return 0;  // those are clipped
+        last_ = parts;
+        Clipped::add(same ? *first : *second, same ? *second : *first, same ? p.m_normalWorldOnB : -p.m_normalWorldOnB,
+                     m_closestDistanceThreshold, *touches_);
+        return 0;
+    }
+
+  private:
+    // Of a triangle; of another shape `other`.
+    static vec3 normalOf(const btCollisionObjectWrapper& of, const vec3& other) {
+        if (of.getCollisionShape()->getShapeType() != TRIANGLE_SHAPE_PROXYTYPE) return other;
+        btVector3 normal;
+        static_cast<const btTriangleShape&>(*of.getCollisionShape()).calcNormal(normal);
+        return fromBullet(of.getWorldTransform().getBasis() * normal);
+    }
+    struct Parts {
+        const btCollisionShape *first = nullptr, *second = nullptr;
+        int part = 0, otherPart = 0;
+        bool operator==(const Parts&) const = default;
+    };
+    Parts last_;
+    const btCollisionObject* a_;
+    bool ball_, parts_;  // it has parts: a point of each will do
+    std::vector<Touch>* touches_;
+};
+
+// Corners above, or a little below, the triangles of a mesh: those that the body turns into the mesh later in the frame. What is above is
+// where its centre of mass is.
+class CornersOnMesh : public btTriangleCallback {
+  public:
+    CornersOnMesh(const btTransform& mesh, std::span<const vec3> corners, const vec3& middle, float within, std::vector<Touch>& touches)
+        : mesh_(mesh), corners_(corners), middle_(middle), within_(within), touches_(&touches) {}
+    void processTriangle(btVector3* triangle, int, int) override {
+        const vec3 a = fromBullet(mesh_ * triangle[0]), b = fromBullet(mesh_ * triangle[1]), c = fromBullet(mesh_ * triangle[2]);
+        vec3 n = glm::cross(b - a, c - a);
+        const float area = glm::length(n);
+        if (!(area > 0)) return;
+        n /= area;
+        if (glm::dot(n, middle_ - a) < 0) n = -n;
+        for (const vec3& p : corners_) {
+            const float distance = glm::dot(n, p - a);
+            if (std::abs(distance) > within_) continue;
+            const vec3 on = p - distance * n;
+            const auto leftOf = [&](const vec3& from, const vec3& to) { return glm::dot(glm::cross(to - from, on - from), n); };
+            const float x = leftOf(a, b), y = leftOf(b, c), z = leftOf(c, a);
+            if ((x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0)) touches_->push_back({p, on, n, distance});
+        }
+    }
+
+  private:
+    btTransform mesh_;
+    std::span<const vec3> corners_;
+    vec3 middle_;
+    float within_;
+    std::vector<Touch>* touches_;
+};
+
+// Leaves out what others imply: points that are one, and points of a surface that lies behind the plane of a nearer contact, such as the
+// edges between a floor's triangles, whose slanted normals would stop what slides or rolls over them. A ball that stays before a plane does
+// so as a whole.
+void filter(std::vector<Touch>& touches, float size, bool ball) {
+    std::ranges::stable_sort(touches, {}, &Touch::distance);
+    std::vector<Touch> kept;
+    kept.reserve(touches.size());
+    const float same = kSame * size;
+    for (const Touch& c : touches) {
+        const bool implied = std::ranges::any_of(kept, [&](const Touch& k) {
+            if (!ball && glm::dot(c.normal, k.normal) > kAlike) return glm::length(c.onA - k.onA) < same;
+            return glm::dot(k.normal, c.onB - k.onB) <= same && glm::dot(k.normal, c.onA - k.onB) >= std::min(k.distance, 0.0F) - same;
+        });
+        if (!implied) kept.push_back(c);
+    }
+    touches = std::move(kept);
+}
+
+// Of touches with one normal, those at the corners of what they span: the same from frame to frame, as what lies between them is not.
+void leaveOutline(std::vector<Touch>& touches, float size) {
+    std::vector<Touch> kept;
+    kept.reserve(touches.size());
+    std::vector<bool> done(touches.size());
+    for (size_t first = 0; first < touches.size(); ++first) {
+        if (done[first]) continue;
+        std::vector<Touch> alike;
+        std::vector<vec3> places;
+        std::vector<float> separations;
+        for (size_t k = first; k < touches.size(); ++k) {
+            if (done[k] || !(glm::dot(touches[k].normal, touches[first].normal) > kAlike)) continue;
+            done[k] = true;
+            alike.push_back(touches[k]);
+            places.push_back(touches[k].onB);
+            separations.push_back(touches[k].distance);
+        }
+        for (const size_t k : outlineOf(places, separations, touches[first].normal, kFlat * size)) kept.push_back(alike[k]);
+    }
+    touches = std::move(kept);
+}
+
+// One search: the bodies where they are expected, and how far they may come.
+class Search {
+  public:
+    Search(btCollisionWorld& world, std::span<const ContactBody> bodies, std::span<const BodyState> states, std::span<const vec4> balls,
+           double seconds, std::vector<BodyContact>& found)
+        : world_(&world), bodies_(bodies), states_(states), balls_(balls), seconds_(static_cast<float>(seconds)), found_(&found) {
+        size_.reserve(bodies.size());
+        allowed_.reserve(bodies.size());
+        for (size_t k = 0; k < bodies.size(); ++k) {
+            for (btCollisionObject* object : {bodies[k].object, bodies[k].hull}) object->setWorldTransform(toBullet(states[k].pose));
+            const float size = bodies[k].object->getCollisionShape()->getAngularMotionDisc();
+            const float turned = bodies[k].corners.empty() ? 0 : size * std::min(glm::length(states[k].spin) * seconds_, 1.0F);
+            size_.push_back(size);
+            allowed_.push_back(glm::length(states[k].pose.position - vec3(balls[k])) + balls[k].w + turned + kNear * size);
+        }
+    }
+    void meet(size_t a, const ContactSolid& solid) {
+        const btCollisionShape& shape = *solid.object->getCollisionShape();
+        const float speed = glm::length(solid.velocity);
+        std::vector<Touch> touches;
+        if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) {
+            onPlane(a, static_cast<const btStaticPlaneShape&>(shape), touches);
+        } else {
+            btVector3 low, high;
+            shape.getAabb(solid.object->getWorldTransform(), low, high);
+            const vec3 middle = 0.5F * (fromBullet(low) + fromBullet(high));
+            const float reach = 0.5F * glm::length(fromBullet(high) - fromBullet(low));
+            const float way = (speed + glm::length(solid.spin) * (reach + glm::length(middle - originOf(solid)))) * seconds_;
+            const vec3 centre(balls_[a]), nearest = glm::clamp(centre, fromBullet(low), fromBullet(high));
+            if (glm::length(centre - nearest) > balls_[a].w + (1 + kNear) * size_[a] + way) return;
+            const float near = kBand * size_[a] + (glm::length(states_[a].velocity) * seconds_) + way;
+            touches = between(bodies_[a], *solid.object, *solid.object, near, allowed_[a] + way);
+            if (!bodies_[a].corners.empty()) onMesh(a, *solid.object, allowed_[a] + way, touches);
+        }
+        const btCollisionObject& of = *bodies_[a].object;
+        filter(touches, size_[a], bodies_[a].ball.w > 0);
+        if (!(bodies_[a].ball.w > 0)) leaveOutline(touches, size_[a]);
+        for (const size_t k : chosen(touches)) {
+            const Touch& t = touches[k];
+            BodyContact c = contact(a, t);
+            c.onB = t.onB;
+            c.normal = t.normal;
+            c.velocityB = solid.velocity;
+            c.spinB = solid.spin;
+            c.centreB = originOf(solid);
+            c.secondsB = static_cast<float>(solid.seconds);
+            c.friction = of.getFriction() * solid.object->getFriction();
+            c.restitution = of.getRestitution() * solid.object->getRestitution();
+            found_->push_back(c);
+        }
+    }
+    // Those whose balls may come near each other, the first before the second: by a sweep along the axis along which they lie farthest
+    // apart.
+    std::vector<std::pair<size_t, size_t>> nearPairs() const {
+        const size_t count = bodies_.size();
+        Bounds all;
+        for (const vec4& ball : balls_) all.add(vec3(ball));
+        const vec3 size = all.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const auto reachOf = [&](size_t k) { return balls_[k].w + (1 + kNear) * size_[k]; };
+        std::vector<size_t> order(count);
+        std::iota(order.begin(), order.end(), size_t{0});
+        std::ranges::sort(order, {}, [&](size_t k) { return balls_[k][axis] - reachOf(k); });
+        std::vector<std::pair<size_t, size_t>> pairs;
+        std::vector<size_t> open;  // that reach as far as the sweep is
+        open.reserve(count);
+        for (const size_t k : order) {
+            const float low = balls_[k][axis] - reachOf(k);
+            std::erase_if(open, [&](size_t other) { return balls_[other][axis] + reachOf(other) < low; });
+            for (const size_t other : open)
+                if (glm::length(vec3(balls_[k]) - vec3(balls_[other])) <= reachOf(k) + reachOf(other))
+                    pairs.emplace_back(std::min(k, other), std::max(k, other));
+            open.push_back(k);
+        }
+        std::ranges::sort(pairs);
+        return pairs;
+    }
+    // Two of nearPairs; `a` moves.
+    void meet(size_t a, size_t b) {
+        if (bodies_[a].ball.w <= 0 && bodies_[b].ball.w > 0 && bodies_[b].moves) std::swap(a, b);  // the ball first
+        const float near = kBand * std::min(size_[a], size_[b]) + glm::length(states_[a].velocity - states_[b].velocity) * seconds_;
+        std::vector<Touch> touches = between(bodies_[a], *bodies_[b].hull, *bodies_[b].object, near, allowed_[a] + allowed_[b]);
+        filter(touches, std::min(size_[a], size_[b]), bodies_[a].ball.w > 0);
+        if (!(bodies_[a].ball.w > 0)) leaveOutline(touches, std::min(size_[a], size_[b]));
+        const btCollisionObject &one = *bodies_[a].object, &other = *bodies_[b].object;
+        for (const size_t k : chosen(touches)) {
+            const Touch& t = touches[k];
+            BodyContact c = contact(a, t);
+            c.b = static_cast<uint32_t>(b);
+            c.onB = states_[b].pose.toOwn(t.onB);
+            if (bodies_[b].ball.w > 0) {
+                c.onB = vec3(bodies_[b].ball);
+                c.radiusB = bodies_[b].ball.w;
+            }
+            c.normal = glm::conjugate(states_[b].pose.rotation) * t.normal;
+            c.friction = one.getFriction() * other.getFriction();
+            c.restitution = one.getRestitution() * other.getRestitution();
+            found_->push_back(c);
+        }
+    }
+
+  private:
+    // What Bullet finds between a body and another or a solid, up to `most` (m) apart. Bodies of many parts are compared as their hulls,
+    // and by their parts where these are nearer than `near`.
+    std::vector<Touch> between(const ContactBody& a, btCollisionObject& hull, btCollisionObject& other, float near, float most) const {
+        const auto search = [&](btCollisionObject* one, btCollisionObject* two, float within) {
+            std::vector<Touch> touches;
+            Closest closest(*one, a.ball.w > 0, within, touches);
+            world_->contactPairTest(one, two, closest);
+            return touches;
+        };
+        std::vector<Touch> touches = search(a.hull, &hull, most);
+        const bool parts = a.hull != a.object || &hull != &other;
+        if (parts && std::ranges::any_of(touches, [&](const Touch& t) { return t.distance < near; })) return search(a.object, &other, near);
+        return touches;
+    }
+    static vec3 originOf(const ContactSolid& solid) { return fromBullet(solid.object->getWorldTransform().getOrigin()); }
+    BodyContact contact(size_t a, const Touch& t) const {
+        BodyContact c;
+        c.a = static_cast<uint32_t>(a);
+        c.onA = states_[a].pose.toOwn(t.onA);
+        if (bodies_[a].ball.w > 0) {
+            c.onA = vec3(bodies_[a].ball);
+            c.radiusA = bodies_[a].ball.w;
+        }
+        return c;
+    }
+    static std::vector<size_t> chosen(std::span<const Touch> touches) {
+        std::vector<vec3> places;
+        std::vector<float> separations;
+        places.reserve(touches.size());
+        separations.reserve(touches.size());
+        for (const Touch& t : touches) {
+            places.push_back(t.onB);
+            separations.push_back(t.distance);
+        }
+        return spreadOf(places, separations, kMostOfPair);
+    }
+    void onPlane(size_t a, const btStaticPlaneShape& plane, std::vector<Touch>& touches) const {
+        const vec3 n = fromBullet(plane.getPlaneNormal());
+        const float constant = plane.getPlaneConstant(), within = allowed_[a];
+        if (glm::dot(n, vec3(balls_[a])) - constant > balls_[a].w + (1 + kNear) * size_[a]) return;
+        const auto add = [&](const vec3& p) {
+            const float distance = glm::dot(n, p) - constant;
+            if (distance <= within) touches.push_back({p, p - distance * n, n, distance});
+        };
+        if (bodies_[a].ball.w > 0) add(states_[a].pose.toWorld(vec3(bodies_[a].ball)) - bodies_[a].ball.w * n);
+        for (const btVector3& corner : bodies_[a].corners) add(states_[a].pose.toWorld(fromBullet(corner)));
+    }
+    void onMesh(size_t a, const btCollisionObject& mesh, float within, std::vector<Touch>& touches) const {
+        std::vector<vec3> corners;
+        corners.reserve(bodies_[a].corners.size());
+        for (const btVector3& corner : bodies_[a].corners) corners.push_back(states_[a].pose.toWorld(fromBullet(corner)));
+        CornersOnMesh callback(mesh.getWorldTransform(), corners, states_[a].pose.position, within, touches);
+        btVector3 low, high;
+        const btTransform own = mesh.getWorldTransform().inverse() * bodies_[a].object->getWorldTransform();
+        bodies_[a].object->getCollisionShape()->getAabb(own, low, high);
+        const btVector3 around(within, within, within);
+        static_cast<const btBvhTriangleMeshShape&>(*mesh.getCollisionShape()).processAllTriangles(&callback, low - around, high + around);
+    }
+    btCollisionWorld* world_;
+    std::span<const ContactBody> bodies_;
+    std::span<const BodyState> states_;
+    std::span<const vec4> balls_;
+    float seconds_;
+    std::vector<BodyContact>* found_;
+    std::vector<float> size_, allowed_;  // m, of each body: about its centre of mass; how far its surface may move until the frame's end
+};
+
+}  // namespace
+
+void findContacts(btCollisionWorld& world, std::span<const ContactBody> bodies, std::span<const ContactSolid> solids,
+                  std::span<const BodyState> states, std::span<const vec4> balls, double seconds, std::vector<BodyContact>& found) {
+    Search search(world, bodies, states, balls, seconds, found);
+    for (size_t a = 0; a < bodies.size(); ++a) {
+        if (!bodies[a].moves) continue;
+        const LayersParams layers = layersOf(*bodies[a].object);
+        for (const ContactSolid& solid : solids)
+            if (const LayersParams own = layersOf(*solid.object); own == kBoxLayers || own.meet(layers)) search.meet(a, solid);
+    }
+    for (const auto& [a, b] : search.nearPairs())
+        if ((bodies[a].moves || bodies[b].moves) && layersOf(*bodies[a].object).meet(layersOf(*bodies[b].object)))
+            search.meet(bodies[a].moves ? a : b, bodies[a].moves ? b : a);
+}
+
+}  // namespace rivulet

@@ -1,0 +1,142 @@
+// Piles of bodies that a GPU moves come to rest, bounces have their height, and frames may be shorter than a substep.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/parity/body_rig.h"
+
+namespace rivulet::body_piles_test {
+namespace {
+
+using body_rig::kGravity, body_rig::Rig, body_rig::Scenario;
+
+class BodyPiles : public testing::TestWithParam<const char*> {};
+
+// The fastest point, about, and how far each body has come since `from`.
+struct Rest {
+    double speed = 0, way = 0;
+};
+Rest restOf(const Rig& rig, const std::vector<dvec3>& from, double reach) {
+    Rest rest;
+    for (size_t k = 0; k < from.size(); ++k) {
+        rest.speed = std::max(rest.speed, glm::length(rig.velocity(k)) + reach * glm::length(dvec3(vec3(rig.row(k).spin))));
+        rest.way = std::max(rest.way, glm::length(rig.place(k) - from[k]));
+    }
+    return rest;
+}
+std::vector<dvec3> placesOf(const Rig& rig, size_t count) {
+    std::vector<dvec3> places;
+    places.reserve(count);
+    for (size_t k = 0; k < count; ++k) places.push_back(rig.place(k));
+    return places;
+}
+
+// Towers of 8 cubes, and of 8 boxes that bounce a little: in the last half of 10 s nothing moves.
+TEST_P(BodyPiles, Rest) {
+    Scenario s;
+    for (int k = 0; k < 8; ++k) s.addBox(vec3(0.1F), vec3(-1, 0.1F * (0.5F + static_cast<float>(k)), 0), 0.5F);
+    for (int k = 0; k < 8; ++k) {
+        s.addBox(vec3(0.2F, 0.1F, 0.2F), vec3(0, 0.1F * (0.5F + static_cast<float>(k)), 1), 0.5F);
+        s.forms.back().restitution = 0.3F;
+    }
+    Rig rig(GetParam(), s);
+    if (!rig.world) GTEST_SKIP() << rig.absent;
+    Rest most;
+    std::vector<dvec3> half;
+    for (int frame = 0; frame < 600; ++frame) {
+        rig.frame();
+        if (frame == 300) half = placesOf(rig, s.bodies.size());
+        if (frame < 300) continue;
+        const Rest rest = restOf(rig, half, 0.1);
+        most = {std::max(most.speed, rest.speed), std::max(most.way, rest.way)};
+    }
+    double lean = 0;
+    for (size_t k = 0; k < 8; ++k) lean = std::max(lean, std::hypot(rig.place(k).x + 1, rig.place(k).z));
+    std::printf("%s: %.1e m/s, %.1e m from 5 to 10 s; the tower leans by %.1e m\n", GetParam(), most.speed, most.way, lean);
+    EXPECT_LT(most.speed, 0.02);
+    EXPECT_LT(most.way, 1.5e-3);
+    EXPECT_LT(lean, 4.0e-3);
+}
+
+// Boxes that land flat come back to e^2 of their height, and do not turn.
+TEST_P(BodyPiles, AFlatBoxBouncesToItsHeight) {
+    const std::vector<float> bounces = {0.1F, 0.5F, 0.9F};
+    Scenario s;
+    for (size_t k = 0; k < 3; ++k) {
+        s.addBox(vec3(0.1F), vec3(static_cast<float>(k) - 1, 0.57F, 0), 0.5F);
+        s.forms.back().restitution = bounces[k];
+    }
+    Rig rig(GetParam(), s);
+    if (!rig.world) GTEST_SKIP() << rig.absent;
+    std::vector<double> tops(3), spins(3);
+    std::vector<bool> fell(3), back(3);
+    for (int frame = 0; frame < 60; ++frame) {
+        rig.frame();
+        for (size_t k = 0; k < 3; ++k) {
+            const double v = rig.velocity(k).y, step = double{s.step};
+            if (v < -1) fell[k] = true;
+            // The top of the parabola of symplectic Euler.
+            if (fell[k] && v > 0 && !back[k]) {
+                tops[k] = rig.place(k).y - 0.05 + v * v / (2 * kGravity) - 0.5 * v * step;
+                spins[k] = glm::length(dvec3(vec3(rig.row(k).spin)));
+                back[k] = true;
+            }
+        }
+    }
+    for (size_t k = 0; k < 3; ++k) {
+        const double e = bounces[k], law = e * e * 0.52;
+        std::printf("%s, e = %.1f: %.5f m, by the law %.5f m; %.1e rad/s\n", GetParam(), e, tops[k], law, spins[k]);
+        EXPECT_NEAR(tops[k], law, 0.01 * law);
+        EXPECT_LT(spins[k], 0.01);
+    }
+}
+
+// What rests does not bounce, however much gravity adds to its speed in a substep.
+TEST_P(BodyPiles, WhatRestsUnderStrongGravityStays) {
+    Scenario s;
+    s.gravity = vec3(0, -98.1F, 0);
+    s.addBox(vec3(0.1F), vec3(0, 0.05F, 0), 0.5F);
+    s.addBall(0.05F, vec3(1, 0.05F, 0), vec3(0.0F), 0.5F, 0.5F);
+    for (BodyForm& form : s.forms) form.restitution = 0.5F;
+    Rig rig(GetParam(), s);
+    if (!rig.world) GTEST_SKIP() << rig.absent;
+    const std::vector<dvec3> begin = {dvec3(0, 0.05, 0), dvec3(1, 0.05, 0)};
+    for (int frame = 0; frame < 60; ++frame) {
+        rig.frame();
+        const Rest rest = restOf(rig, begin, 0.05);
+        EXPECT_LT(rest.speed, 2.0e-3) << frame;
+        EXPECT_LT(rest.way, 1.0e-4) << frame;
+    }
+}
+
+// Substeps longer than a frame: some frames have none, and a stack at rest takes no impulse from memory that no substep wrote.
+TEST_P(BodyPiles, FramesWithoutASubstep) {
+    Scenario s;
+    s.step = 0.03F;
+    s.poison = 0xc1200000;  // -10.0F
+    for (int k = 0; k < 4; ++k) s.addBox(vec3(0.2F), vec3(0, 0.2F * (0.5F + static_cast<float>(k)), 0), 0.5F);
+    Rig rig(GetParam(), s);
+    if (!rig.world) GTEST_SKIP() << rig.absent;
+    std::vector<dvec3> begin, half;
+    Rest first, most;
+    for (int frame = 0; frame < 240; ++frame) {
+        rig.frame();
+        if (frame == 0) begin = placesOf(rig, 4);
+        if (frame == 120) half = placesOf(rig, 4);
+        Rest& of = frame < 120 ? first : most;
+        const Rest rest = restOf(rig, frame < 120 ? begin : half, 0.1);
+        of = {std::max(of.speed, rest.speed), std::max(of.way, rest.way)};
+    }
+    std::printf("%s: %.1e m/s, %.1e m, then %.1e m/s, %.1e m\n", GetParam(), first.speed, first.way, most.speed, most.way);
+    EXPECT_LT(first.speed, 0.1);
+    EXPECT_LT(first.way, 5.0e-3);
+    EXPECT_LT(most.speed, 5.0e-3);
+    EXPECT_LT(most.way, 5.0e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, BodyPiles, testing::Values("cl"), [](const auto& row) { return row.param; });
+
+}  // namespace
+}  // namespace rivulet::body_piles_test

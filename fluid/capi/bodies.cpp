@@ -158,6 +158,8 @@ Status Bodies::begin(const rivulet_world_options& o, const FluidParams& fluid, c
     host_ = *hosting;
     if ((host_.advance == nullptr) != (host_.reset == nullptr))
         return badInput("body_host has one of advance and reset: give both or neither");
+    if ((host_.contacts == nullptr) != (host_.passed == nullptr))
+        return badInput("body_host has one of contacts and passed: give both or neither");
     if (host_.advance != nullptr) to.bodyHost = host();
     return ok();
 }
@@ -185,6 +187,68 @@ void Bodies::toStates(std::span<const BodyState> from) {
     for (size_t k = 0; k < from.size(); ++k) states_.push_back(stateOf(k, from[k]));
 }
 
+void Bodies::toLoads(std::span<const BodyLoad> from) {
+    loads_.clear();
+    loads_.reserve(from.size());
+    for (const BodyLoad& l : from) loads_.push_back({{l.force.x, l.force.y, l.force.z}, {l.torque.x, l.torque.y, l.torque.z}});
+}
+
+void Bodies::fromStates(std::span<BodyState> to) const {
+    for (size_t k = 0; k < to.size(); ++k)
+        to[k] = {toOwn(poseOf(states_[k].pose), frames_[k]), vectorOf(states_[k].velocity), vectorOf(states_[k].spin)};
+}
+
+// Error (badInput): the members that no contact has.
+Result<BodyContact> Bodies::contactOf(const rivulet_body_contact& c, size_t bodies) const {
+    const auto wrong = [](const char* what) { return badInput(fmt::format("body_host.contacts added a contact {}", what)); };
+    const bool solid = c.b == RIVULET_SOLID;
+    if (c.a >= bodies || (!solid && c.b >= bodies) || c.a == c.b) return wrong("of a body that there is not, or with itself");
+    BodyContact to;
+    to.a = c.a;
+    to.b = solid ? BodyContact::kSolid : c.b;
+    const Pose& a = frames_[c.a];
+    const Pose b = solid ? Pose() : frames_[c.b];
+    to.onA = a.toOwn(vectorOf(c.on_a));
+    to.onB = b.toOwn(vectorOf(c.on_b));
+    to.radiusA = c.radius_a;
+    to.radiusB = c.radius_b;
+    to.normal = glm::conjugate(b.rotation) * vectorOf(c.normal);
+    to.velocityB = vectorOf(c.velocity_b);
+    to.friction = c.friction;
+    to.restitution = c.restitution;
+    if (!isWithin(to.onA, kMostDistance) || !isWithin(to.onB, kMostDistance) || !(c.radius_a >= 0 && c.radius_a <= kMostDistance) ||
+        !(c.radius_b >= 0 && c.radius_b <= kMostDistance) || !isWithin(to.velocityB, kMostSpeed))
+        return wrong("with a place, radius or velocity that is not finite or absurd");
+    if (!(std::abs(glm::length(to.normal) - 1.0F) < 1.0e-3F)) return wrong("whose normal has no unit length");
+    constexpr float kMostFriction = 1.0e3F;
+    if (!(c.friction >= 0 && c.friction <= kMostFriction)) return wrong("whose friction is not between 0 and 1,000");
+    if (!(c.restitution >= 0 && c.restitution <= 1)) return wrong("whose restitution is not between 0 and 1");
+    return to;
+}
+
+bool Bodies::findContacts(std::span<const BodyState> states, std::span<const vec4> balls, double seconds, std::vector<BodyContact>& found) {
+    if (!thrown_.empty()) return false;
+    toStates(states);
+    contacts_.clear();
+    const rivulet_add_contact add = [](void* to, const rivulet_body_contact* contact) {
+        if (contact != nullptr) static_cast<std::vector<rivulet_body_contact>*>(to)->push_back(*contact);
+    };
+    bool knows = false;
+    callHost("contacts",
+             [&] { knows = host_.contacts(host_.user, states_.data(), &balls.data()->x, states.size(), seconds, add, &contacts_) != 0; });
+    if (!knows || !thrown_.empty()) return false;
+    found.reserve(found.size() + contacts_.size());
+    for (const rivulet_body_contact& c : contacts_) {
+        const Result<BodyContact> contact = contactOf(c, states.size());
+        if (!contact) {
+            thrown_ = contact.error().message;
+            return false;
+        }
+        found.push_back(*contact);
+    }
+    return true;
+}
+
 rivulet_body_state Bodies::stateOf(size_t place, const BodyState& s) const {
     return {poseOf(toMesh(s.pose, frames_[place])), {s.velocity.x, s.velocity.y, s.velocity.z}, {s.spin.x, s.spin.y, s.spin.z}};
 }
@@ -195,15 +259,34 @@ BodyHost Bodies::host() {
     h.advance = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
         Bodies& b = *static_cast<Bodies*>(self);
         if (!b.thrown_.empty()) return;
-        b.loads_.clear();
-        for (const BodyLoad& l : loads) b.loads_.push_back({{l.force.x, l.force.y, l.force.z}, {l.torque.x, l.torque.y, l.torque.z}});
+        b.toLoads(loads);
         b.toStates(states);
         const float g[3] = {gravity.x, gravity.y, gravity.z};
         b.callHost("advance", [&] { b.host_.advance(b.host_.user, b.loads_.data(), g, seconds, b.states_.data(), states.size()); });
-        if (!b.thrown_.empty()) return;
-        for (size_t k = 0; k < states.size(); ++k)
-            states[k] = {toOwn(poseOf(b.states_[k].pose), b.frames_[k]), vectorOf(b.states_[k].velocity), vectorOf(b.states_[k].spin)};
+        if (b.thrown_.empty()) b.fromStates(states);
     };
+    if (host_.contacts != nullptr) {
+        h.contacts = [](void* self, std::span<const BodyState> states, std::span<const vec4> balls, double seconds,
+                        std::vector<BodyContact>& found) {
+            return static_cast<Bodies*>(self)->findContacts(states, balls, seconds, found);
+        };
+        h.passed = [](void* self, double seconds) {
+            Bodies& b = *static_cast<Bodies*>(self);
+            if (b.thrown_.empty()) b.callHost("passed", [&] { b.host_.passed(b.host_.user, seconds); });
+        };
+    }
+    if (host_.predict != nullptr)
+        h.predict = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double from, double seconds,
+                       std::span<BodyState> states) {
+            Bodies& b = *static_cast<Bodies*>(self);
+            if (!b.thrown_.empty()) return;
+            b.toLoads(loads);
+            b.toStates(states);
+            const float g[3] = {gravity.x, gravity.y, gravity.z};
+            b.callHost("predict",
+                       [&] { b.host_.predict(b.host_.user, b.loads_.data(), g, from, seconds, b.states_.data(), states.size()); });
+            if (b.thrown_.empty()) b.fromStates(states);
+        };
     h.reset = [](void* self, std::span<const BodyState> states) {
         Bodies& b = *static_cast<Bodies*>(self);
         b.toStates(states);

@@ -65,6 +65,10 @@ class Bodies {
     void callHost(const char* name, const Call& call);
     BodyHost host();
     void toStates(std::span<const BodyState> from);
+    void toLoads(std::span<const BodyLoad> from);
+    void fromStates(std::span<BodyState> to) const;
+    Result<BodyContact> contactOf(const rivulet_body_contact& c, size_t bodies) const;
+    bool findContacts(std::span<const BodyState> states, std::span<const vec4> balls, double seconds, std::vector<BodyContact>& found);
 
     float spacing_ = 0;
     BoxParams box_;
@@ -76,6 +80,7 @@ class Bodies {
     std::string thrown_;
     std::vector<rivulet_body_load> loads_;
     std::vector<rivulet_body_state> states_;
+    std::vector<rivulet_body_contact> contacts_;
     uint32_t next_ = 0;
     std::vector<Pose> frames_;  // of FluidWorld::bodyIds; behind them that of one which is being added, or could not be
     std::vector<Waiting> waiting_;

@@ -17,6 +17,7 @@ the linker searches.
 """
 
 from ._library import BadInput, Error, version
+from ._structs import CONTACT, SOLID
 from .context import Context
 from .draw import Camera, Fog, Light, Picture, Shadow, Target, View
 from .parts import Air, Body, Box, Float, Mesh, Particles, SkinStats, Sphere, Stats
@@ -24,5 +25,5 @@ from .skin import Skin
 from .snapshot import Recorded, Recording, Snapshot
 from .world import World
 
-__all__ = ["Air", "BadInput", "Body", "Box", "Camera", "Context", "Error", "Float", "Fog", "Light", "Mesh", "Particles", "Picture", "Recorded",
-           "Recording", "Shadow", "Skin", "SkinStats", "Snapshot", "Sphere", "Stats", "Target", "View", "World", "version"]
+__all__ = ["CONTACT", "SOLID", "Air", "BadInput", "Body", "Box", "Camera", "Context", "Error", "Float", "Fog", "Light", "Mesh", "Particles", "Picture",
+           "Recorded", "Recording", "Shadow", "Skin", "SkinStats", "Snapshot", "Sphere", "Stats", "Target", "View", "World", "version"]

@@ -12,12 +12,20 @@ ADVANCE = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, POINTER(c_float * 3), c_dou
 RESET = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, c_size_t)
 ADDED = ctypes.CFUNCTYPE(None, c_void_p, c_uint32, c_void_p)
 REMOVED = ctypes.CFUNCTYPE(None, c_void_p, c_uint32)
+ADD_CONTACT = ctypes.CFUNCTYPE(None, c_void_p, c_void_p)
+CONTACTS = ctypes.CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p, c_size_t, c_double, ADD_CONTACT, c_void_p)
+PASSED = ctypes.CFUNCTYPE(None, c_void_p, c_double)
+PREDICT = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, POINTER(c_float * 3), c_double, c_double, c_void_p, c_size_t)
 SAMPLES = ctypes.CFUNCTYPE(None, c_void_p, c_void_p, c_size_t)
 LINE = ctypes.CFUNCTYPE(None, c_void_p, c_int32, c_size_t, POINTER(c_float * 3), POINTER(c_float * 3))
 
 POSE = np.dtype([("position", np.float32, 3), ("rotation", np.float32, 4)])
 STATE = np.dtype(POSE.descr + [("velocity", np.float32, 3), ("spin", np.float32, 3)])
 LOAD = np.dtype([("force", np.float64, 3), ("torque", np.float64, 3)])
+CONTACT = np.dtype([("a", np.uint32), ("b", np.uint32), ("on_a", np.float32, 3), ("on_b", np.float32, 3), ("radius_a", np.float32),
+                    ("radius_b", np.float32), ("normal", np.float32, 3), ("velocity_b", np.float32, 3), ("friction", np.float32),
+                    ("restitution", np.float32)])
+SOLID = 0x7fffffff
 SAMPLE = np.dtype([("density", np.float32), ("velocity", np.float32, 3), ("gradient", np.float32, 3)])
 RAY = np.dtype([("origin", np.float32, 3), ("direction", np.float32, 3), ("reach", np.float32)])
 HIT = np.dtype([("hit", np.uint32), ("inside", np.uint32), ("distance", np.float32), ("place", np.float32, 3), ("normal", np.float32, 3),
@@ -69,7 +77,8 @@ class BodyState(Structure):
 
 
 class BodyHost(Structure):
-    _fields_ = [("size", c_size_t), ("user", c_void_p), ("advance", ADVANCE), ("reset", RESET), ("added", ADDED), ("removed", REMOVED)]
+    _fields_ = [("size", c_size_t), ("user", c_void_p), ("advance", ADVANCE), ("reset", RESET), ("added", ADDED), ("removed", REMOVED),
+                ("contacts", CONTACTS), ("passed", PASSED), ("predict", PREDICT)]
 
 
 class WorldOptions(Structure):

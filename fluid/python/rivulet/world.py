@@ -76,9 +76,40 @@ def _host_of(host: Any, raised: Raised) -> c.BodyHost:
             host.removed(id)
         raised.guard(work)
 
-    return struct(c.BodyHost, advance=c.ADVANCE(advance), reset=c.RESET(reset),
-                  added=c.ADDED(added) if hasattr(host, "added") else c.ADDED(0),
-                  removed=c.REMOVED(removed) if hasattr(host, "removed") else c.REMOVED(0))
+    def contacts(_: Any, states: int, balls: int, count: int, seconds: float, add: Any, to: int) -> int:
+        known = False
+
+        def work() -> None:
+            nonlocal known
+            found = host.contacts(view_of(states, c.STATE, count).copy(), view_of(balls, np.float32, 4 * count).reshape(-1, 4).copy(), seconds)
+            if found is None:
+                return
+            rows = np.ascontiguousarray(found, c.CONTACT).reshape(-1)
+            for k in range(len(rows)):
+                add(to, rows.ctypes.data + k * c.CONTACT.itemsize)
+            known = True
+        raised.guard(work)
+        return int(known)
+
+    def passed(_: Any, seconds: float) -> None:
+        def work() -> None:
+            host.passed(seconds)
+        raised.guard(work)
+
+    def predict(_: Any, loads: int, gravity: Any, start: float, seconds: float, states: int, count: int) -> None:
+        def work() -> None:
+            theirs = view_of(states, c.STATE, count)
+            there = theirs.copy()
+            host.predict(view_of(loads, c.LOAD, count).copy(), np.array(gravity.contents), start, seconds, there)
+            theirs[:] = there
+        raised.guard(work)
+
+    def given(name: str, kind: Any, function: Any) -> Any:
+        return kind(function) if hasattr(host, name) else kind(0)
+
+    return struct(c.BodyHost, advance=c.ADVANCE(advance), reset=c.RESET(reset), added=given("added", c.ADDED, added),
+                  removed=given("removed", c.REMOVED, removed), contacts=given("contacts", c.CONTACTS, contacts),
+                  passed=given("passed", c.PASSED, passed), predict=given("predict", c.PREDICT, predict))
 
 
 class World(Queries):

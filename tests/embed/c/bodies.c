@@ -207,6 +207,81 @@ static void the_host_moves_them(rivulet_context* context) {
     rivulet_world_destroy(world);
 }
 
+/* An engine of balls of one radius, over a floor at y = 0. */
+struct balls {
+    float radius;
+    int asked, passed, moved, wrong;
+};
+static int32_t touch_floor(void* user, const rivulet_body_state* states, const float* balls, size_t count, double seconds,
+                           rivulet_add_contact add, void* to) {
+    struct balls* e = user;
+    e->asked += seconds > 0;
+    for (size_t k = 0; k < count; ++k) {
+        if (balls[4 * k + 1] - balls[4 * k + 3] > e->radius) continue; /* it cannot be so low in this frame */
+        const rivulet_body_contact floor = {.a = (uint32_t)k,
+                                            .b = RIVULET_SOLID,
+                                            .on_b = {states[k].pose.position[0], 0, states[k].pose.position[2]},
+                                            .radius_a = e->radius,
+                                            .normal = {0, e->wrong ? 0.5F : 1, 0},
+                                            .friction = 0.4F};
+        add(to, &floor);
+    }
+    return 1;
+}
+static void count_passed(void* user, double seconds) { ((struct balls*)user)->passed += seconds > 0; }
+static void stay_there(void* user, const rivulet_body_load* loads, const float* gravity, double seconds, rivulet_body_state* states,
+                       size_t count) {
+    (void)loads, (void)gravity, (void)seconds, (void)states, (void)count;
+    ++((struct balls*)user)->moved;
+}
+static void forget(void* user, const rivulet_body_state* states, size_t count) { (void)user, (void)states, (void)count; }
+
+/* On a GPU the library moves a ball by the contacts that the host names: it sinks, and lies on the floor. advance is never called. */
+static void a_gpu_moves_them_by_the_hosts_contacts(void) {
+    rivulet_context_options options = {.size = sizeof options, .backend = "cl"};
+    rivulet_context* context = NULL;
+    if (rivulet_context_create(&options, &context, &why) != RIVULET_OK) {
+        printf("no device of OpenCL: %s\n", why.message);
+        return;
+    }
+    struct balls engine = {.radius = 0.08F};
+    rivulet_body_host host = {.size = sizeof host, .user = &engine, .advance = stay_there, .reset = forget, .contacts = touch_floor};
+    enum { N = 160 };
+    float samples[3 * N];
+    for (int k = 0; k < N; ++k) { /* evenly on a sphere */
+        const float y = 1 - (2 * (float)k + 1) / N, r = sqrtf(1 - y * y), turn = 2.3999632F * (float)k, inside = engine.radius - 0.0125F;
+        samples[3 * k] = inside * r * cosf(turn);
+        samples[3 * k + 1] = inside * y;
+        samples[3 * k + 2] = inside * r * sinf(turn);
+    }
+    const float mass = 5.4F, inertia = 0.4F * mass * engine.radius * engine.radius;
+    const rivulet_body ball = {.size = sizeof ball,
+                               .samples = samples,
+                               .samples_count = N,
+                               .mass = mass,
+                               .inertia = {inertia, inertia, inertia},
+                               .volume = 0.00214F,
+                               .pose = {{0.25F, 0.35F, 0.25F}, {0, 0, 0, 0}}};
+    const char* json =
+        "{\"fluid\": {\"method\": \"pbf\", \"spacing\": 0.025, \"box\": {\"max\": [0.5, 0.8, 0.5]},"
+        " \"blocks\": [{\"max\": [0.5, 0.2, 0.5]}]}}";
+    const rivulet_world_options o = {.size = sizeof o, .json = json, .bodies = &ball, .bodies_count = 1, .body_host = &host};
+    rivulet_world* world = NULL;
+    REFUSED(rivulet_world_create(context, &o, &world, &why), "contacts and passed: give both or neither");
+    host.passed = count_passed;
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    run(world, 75);
+    rivulet_body_state state;
+    DONE(rivulet_world_bodies(world, &state, 1, &why));
+    printf("it lies at %.4f m, asked %d times, passed %d\n", state.pose.position[1], engine.asked, engine.passed);
+    CHECK(fabsf(state.pose.position[1] - engine.radius) < 0.004F && fabsf(state.velocity[1]) < 0.1F);
+    CHECK(engine.asked >= 75 && engine.passed >= 75 && engine.moved == 0);
+    engine.wrong = 1;
+    CHECK(rivulet_world_step(world, NULL, 1.0 / 60, &why) == RIVULET_FAILED && strstr(why.message, "normal") != NULL);
+    rivulet_world_destroy(world);
+    rivulet_context_destroy(context);
+}
+
 static void what_cannot_be_is_refused(rivulet_context* context) {
     rivulet_world* world = pool(context, "", NULL);
     rivulet_mesh mesh = box_of(0.1F, 0.1F);
@@ -275,5 +350,6 @@ int main(void) {
     the_host_moves_them(context);
     what_cannot_be_is_refused(context);
     rivulet_context_destroy(context);
+    a_gpu_moves_them_by_the_hosts_contacts();
     return failures > 0;
 }

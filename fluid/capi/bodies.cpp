@@ -25,7 +25,9 @@ struct HostThrew : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// What a function that failed leaves behind: in this frame no other is called, and without `advance` no body moves.
 constexpr const char* kStay = "; the bodies stay where they are";
+constexpr const char* kMoved = "; the GPU has moved the bodies nevertheless";
 
 bool isOrigin(const Pose& frame) { return frame.position == vec3(0.0F) && frame.rotation == quat(1, 0, 0, 0); }
 
@@ -160,26 +162,38 @@ Status Bodies::begin(const rivulet_world_options& o, const FluidParams& fluid, c
         return badInput("body_host has one of advance and reset: give both or neither");
     if ((host_.contacts == nullptr) != (host_.passed == nullptr))
         return badInput("body_host has one of contacts and passed: give both or neither");
+    if (host_.contacts == nullptr && host_.predict != nullptr)
+        return badInput("body_host has predict, and neither contacts nor passed: give these, too, or leave predict out");
+    if (host_.contacts != nullptr && host_.advance == nullptr)
+        return badInput(
+            fmt::format("body_host has contacts, passed{}, and neither advance nor reset: give these, too; they move the bodies "
+                        "on the cpu, and where contacts returns 0",
+                        host_.predict != nullptr ? ", predict" : ""));
     if (host_.advance != nullptr) to.bodyHost = host();
     return ok();
 }
 
-// Runs `call`, a function of the host. What it throws is kept, for the call that is under way.
+// Runs `call`, a function of the host. What it throws is kept, for the call that is under way; `then` ends the sentence.
 template <class Call>
-void Bodies::callHost(const char* name, const Call& call) {
+void Bodies::callHost(const char* name, const char* then, const Call& call) {
     const CallbackScope scope(*callback_);
     try {
         call();
     } catch (const std::exception& e) {
-        thrown_ = fmt::format("body_host.{} threw an exception: {}", name, e.what());
+        fail(fmt::format("body_host.{} threw an exception: {}", name, e.what()), then);
     } catch (...) {
-        thrown_ = fmt::format("body_host.{} threw an exception", name);
+        fail(fmt::format("body_host.{} threw an exception", name), then);
     }
+}
+
+// The first of a call counts.
+void Bodies::fail(const std::string& sentence, const char* then) {
+    if (thrown_.empty()) thrown_ = sentence + then;
 }
 
 Status Bodies::thrown() {
     if (thrown_.empty()) return ok();
-    return failed(std::exchange(thrown_, {}) + kStay);
+    return failed(std::exchange(thrown_, {}));
 }
 
 void Bodies::toStates(std::span<const BodyState> from) {
@@ -198,11 +212,16 @@ void Bodies::fromStates(std::span<BodyState> to) const {
         to[k] = {toOwn(poseOf(states_[k].pose), frames_[k]), vectorOf(states_[k].velocity), vectorOf(states_[k].spin)};
 }
 
-// Error (badInput): the members that no contact has.
+// Error (badInput): a contact that cannot be.
 Result<BodyContact> Bodies::contactOf(const rivulet_body_contact& c, size_t bodies) const {
-    const auto wrong = [](const char* what) { return badInput(fmt::format("body_host.contacts added a contact {}", what)); };
+    const auto wrong = [](const std::string& what) { return badInput("body_host.contacts added a contact " + what); };
     const bool solid = c.b == RIVULET_SOLID;
-    if (c.a >= bodies || (!solid && c.b >= bodies) || c.a == c.b) return wrong("of a body that there is not, or with itself");
+    if (c.a == RIVULET_SOLID)
+        return wrong(solid ? "of two solids: a is a body" : "whose a is RIVULET_SOLID: a is a body, and b may be a solid");
+    for (const uint32_t body : {c.a, c.b})
+        if (body >= bodies && body != RIVULET_SOLID)
+            return wrong(fmt::format("of body {}, and there are {}: give places among the states, counted from 0", body, bodies));
+    if (c.a == c.b) return wrong(fmt::format("of body {} with itself", c.a));
     BodyContact to;
     to.a = c.a;
     to.b = solid ? BodyContact::kSolid : c.b;
@@ -214,34 +233,56 @@ Result<BodyContact> Bodies::contactOf(const rivulet_body_contact& c, size_t bodi
     to.radiusB = c.radius_b;
     to.normal = glm::conjugate(b.rotation) * vectorOf(c.normal);
     to.velocityB = vectorOf(c.velocity_b);
+    to.spinB = vectorOf(c.spin_b);
+    to.centreB = vectorOf(c.centre_b);
+    to.secondsB = static_cast<float>(c.seconds_b);
     to.friction = c.friction;
     to.restitution = c.restitution;
-    if (!isWithin(to.onA, kMostDistance) || !isWithin(to.onB, kMostDistance) || !(c.radius_a >= 0 && c.radius_a <= kMostDistance) ||
-        !(c.radius_b >= 0 && c.radius_b <= kMostDistance) || !isWithin(to.velocityB, kMostSpeed))
-        return wrong("with a place, radius or velocity that is not finite or absurd");
-    if (!(std::abs(glm::length(to.normal) - 1.0F) < 1.0e-3F)) return wrong("whose normal has no unit length");
     constexpr float kMostFriction = 1.0e3F;
-    if (!(c.friction >= 0 && c.friction <= kMostFriction)) return wrong("whose friction is not between 0 and 1,000");
-    if (!(c.restitution >= 0 && c.restitution <= 1)) return wrong("whose restitution is not between 0 and 1");
+    constexpr double kMostSeconds = 1.0e6;
+    if (!isWithin(to.onA, kMostDistance) || !isWithin(to.onB, kMostDistance) || !isWithin(to.centreB, kMostDistance))
+        return wrong(fmt::format("whose on_a, on_b or centre_b is not finite, or beyond {} m", kMostDistance));
+    if (!(c.radius_a >= 0 && c.radius_a <= kMostDistance && c.radius_b >= 0 && c.radius_b <= kMostDistance))
+        return wrong(fmt::format("whose radius_a or radius_b is not from 0 to {} m", kMostDistance));
+    if (!(std::abs(glm::length(to.normal) - 1.0F) < 1.0e-3F)) return wrong("whose normal is not a unit vector");
+    if (!isWithin(to.velocityB, kMostSpeed) || !isWithin(to.spinB, kMostSpeed))
+        return wrong(fmt::format("whose velocity_b or spin_b is not finite, or more than {}", kMostSpeed));
+    if (!(c.seconds_b >= 0 && c.seconds_b <= kMostSeconds))
+        return wrong(fmt::format("whose seconds_b is not from 0 to {} s", kMostSeconds));
+    if (!(c.friction >= 0 && c.friction <= kMostFriction)) return wrong(fmt::format("whose friction is not from 0 to {}", kMostFriction));
+    if (!(c.restitution >= 0 && c.restitution <= 1)) return wrong("whose restitution is not from 0 to 1");
     return to;
+}
+
+// Nothing may be thrown through the host's function.
+void Bodies::addContact(const rivulet_body_contact* contact) noexcept {
+    try {
+        if (!thrown_.empty()) return;
+        if (contact == nullptr) return fail("body_host.contacts added a contact that is NULL", kStay);
+        const Result<rivulet_body_contact> read = readStruct(contact, "rivulet_body_contact", "contact");
+        if (!read) return fail("body_host.contacts: " + read.error().message, kStay);
+        contacts_.push_back(*read);
+    } catch (...) {
+        addingFailed_ = true;
+    }
 }
 
 bool Bodies::findContacts(std::span<const BodyState> states, std::span<const vec4> balls, double seconds, std::vector<BodyContact>& found) {
     if (!thrown_.empty()) return false;
     toStates(states);
     contacts_.clear();
-    const rivulet_add_contact add = [](void* to, const rivulet_body_contact* contact) {
-        if (contact != nullptr) static_cast<std::vector<rivulet_body_contact>*>(to)->push_back(*contact);
-    };
+    addingFailed_ = false;
+    const rivulet_add_contact add = [](void* to, const rivulet_body_contact* contact) { static_cast<Bodies*>(to)->addContact(contact); };
     bool knows = false;
-    callHost("contacts",
-             [&] { knows = host_.contacts(host_.user, states_.data(), &balls.data()->x, states.size(), seconds, add, &contacts_) != 0; });
+    callHost("contacts", kStay,
+             [&] { knows = host_.contacts(host_.user, states_.data(), &balls.data()->x, states.size(), seconds, add, this) != 0; });
+    if (addingFailed_) fail("body_host.contacts added more contacts than there is memory for", kStay);
     if (!knows || !thrown_.empty()) return false;
     found.reserve(found.size() + contacts_.size());
     for (const rivulet_body_contact& c : contacts_) {
         const Result<BodyContact> contact = contactOf(c, states.size());
         if (!contact) {
-            thrown_ = contact.error().message;
+            fail(contact.error().message, kStay);
             return false;
         }
         found.push_back(*contact);
@@ -262,7 +303,7 @@ BodyHost Bodies::host() {
         b.toLoads(loads);
         b.toStates(states);
         const float g[3] = {gravity.x, gravity.y, gravity.z};
-        b.callHost("advance", [&] { b.host_.advance(b.host_.user, b.loads_.data(), g, seconds, b.states_.data(), states.size()); });
+        b.callHost("advance", kStay, [&] { b.host_.advance(b.host_.user, b.loads_.data(), g, seconds, b.states_.data(), states.size()); });
         if (b.thrown_.empty()) b.fromStates(states);
     };
     if (host_.contacts != nullptr) {
@@ -272,7 +313,7 @@ BodyHost Bodies::host() {
         };
         h.passed = [](void* self, double seconds) {
             Bodies& b = *static_cast<Bodies*>(self);
-            if (b.thrown_.empty()) b.callHost("passed", [&] { b.host_.passed(b.host_.user, seconds); });
+            if (b.thrown_.empty()) b.callHost("passed", kMoved, [&] { b.host_.passed(b.host_.user, seconds); });
         };
     }
     if (host_.predict != nullptr)
@@ -283,27 +324,27 @@ BodyHost Bodies::host() {
             b.toLoads(loads);
             b.toStates(states);
             const float g[3] = {gravity.x, gravity.y, gravity.z};
-            b.callHost("predict",
+            b.callHost("predict", kStay,
                        [&] { b.host_.predict(b.host_.user, b.loads_.data(), g, from, seconds, b.states_.data(), states.size()); });
             if (b.thrown_.empty()) b.fromStates(states);
         };
     h.reset = [](void* self, std::span<const BodyState> states) {
         Bodies& b = *static_cast<Bodies*>(self);
         b.toStates(states);
-        b.callHost("reset", [&] { b.host_.reset(b.host_.user, b.states_.data(), states.size()); });
+        b.callHost("reset", "", [&] { b.host_.reset(b.host_.user, b.states_.data(), states.size()); });
     };
     // An exception here leaves the body where it is: in the world, or not.
     h.added = [](void* self, uint32_t id, const Body& body) {
         Bodies& b = *static_cast<Bodies*>(self);
         if (b.host_.added == nullptr) return;
         const rivulet_body_state state = b.stateOf(b.frames_.size() - 1, body.state);
-        b.callHost("added", [&] { b.host_.added(b.host_.user, id, &state); });
+        b.callHost("added", "", [&] { b.host_.added(b.host_.user, id, &state); });
         if (!b.thrown_.empty()) throw HostThrew(std::exchange(b.thrown_, {}));
     };
     h.removed = [](void* self, uint32_t id, size_t) {
         Bodies& b = *static_cast<Bodies*>(self);
         if (b.host_.removed == nullptr) return;
-        b.callHost("removed", [&] { b.host_.removed(b.host_.user, id); });
+        b.callHost("removed", "", [&] { b.host_.removed(b.host_.user, id); });
         if (!b.thrown_.empty()) throw HostThrew(std::exchange(b.thrown_, {}));
     };
     return h;

@@ -39,7 +39,7 @@ class Bodies {
     Result<std::optional<size_t>> placeOf(const FluidWorld& world, uint32_t id) const;
     rivulet_body_state stateOf(size_t place, const BodyState& state) const;
 
-    Status thrown();  // the error of what a function of the host threw in this call
+    Status thrown();  // the error of a function of the host in this call: what it threw, or a contact that cannot be
     void forget() { thrown_.clear(); }
 
   private:
@@ -62,12 +62,14 @@ class Bodies {
     static void finish(Body& body, Made made);
     Status enter(FluidWorld& world, uint32_t id, const Body& body, const Pose& frame);
     template <class Call>
-    void callHost(const char* name, const Call& call);
+    void callHost(const char* name, const char* then, const Call& call);
+    void fail(const std::string& sentence, const char* then);
     BodyHost host();
     void toStates(std::span<const BodyState> from);
     void toLoads(std::span<const BodyLoad> from);
     void fromStates(std::span<BodyState> to) const;
     Result<BodyContact> contactOf(const rivulet_body_contact& c, size_t bodies) const;
+    void addContact(const rivulet_body_contact* contact) noexcept;
     bool findContacts(std::span<const BodyState> states, std::span<const vec4> balls, double seconds, std::vector<BodyContact>& found);
 
     float spacing_ = 0;
@@ -80,7 +82,8 @@ class Bodies {
     std::string thrown_;
     std::vector<rivulet_body_load> loads_;
     std::vector<rivulet_body_state> states_;
-    std::vector<rivulet_body_contact> contacts_;
+    std::vector<rivulet_body_contact> contacts_;  // that the host has added
+    bool addingFailed_ = false;                   // there was no memory for one
     uint32_t next_ = 0;
     std::vector<Pose> frames_;  // of FluidWorld::bodyIds; behind them that of one which is being added, or could not be
     std::vector<Waiting> waiting_;

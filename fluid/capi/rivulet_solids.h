@@ -61,15 +61,19 @@ typedef struct rivulet_body_load {
 } rivulet_body_load;
 /* A contact that may act in a frame, between body `a` and another or a solid. Its points are those of the two surfaces that are nearest to
    each other there; they may be apart. */
-enum { RIVULET_SOLID = 0x7fffffff }; /* in place of a body: a wall or solid that the host knows */
+enum { RIVULET_SOLID = 0x7fffffff }; /* in place of body b: a wall or solid that the host knows */
 typedef struct rivulet_body_contact {
-    uint32_t a, b; /* places among the states; b may be RIVULET_SOLID */
+    size_t size;
+    uint32_t a, b; /* two places among the states, or one and RIVULET_SOLID */
     /* m: in the frame of a; in that of b, of a solid in the world when the frame begins. With a radius it is the centre of a ball, and the
        surface is so far from it, whichever way the ball turns. */
     float on_a[3], on_b[3], radius_a, radius_b;
-    float normal[3];             /* unit, from b to a; in the frame of b, of a solid in the world */
-    float velocity_b[3];         /* m/s, of a solid's point */
-    float friction, restitution; /* Coulomb's coefficient; 0 to 1 */
+    float normal[3]; /* unit, from b to a; in the frame of b, of a solid in the world */
+    /* Of a solid that moves: m/s of the point centre_b (m, in the world when the frame begins), and rad/s, as it turns about that point; it
+       moves so for seconds_b (s) from the frame's begin on, 0: not at all. */
+    float velocity_b[3], spin_b[3], centre_b[3];
+    double seconds_b;
+    float friction, restitution; /* Coulomb's coefficient, 0 to 1,000; 0 to 1 */
 } rivulet_body_contact;
 typedef void (*rivulet_add_contact)(void* to, const rivulet_body_contact* contact);
 /* The host's rigid-body engine, which moves the bodies. NULL functions: bodies collide with nothing but fluid. */
@@ -85,16 +89,18 @@ typedef struct rivulet_body_host {
        are without it. */
     void (*added)(void* user, uint32_t id, const rivulet_body_state* state);
     void (*removed)(void* user, uint32_t id);
-    /* Both or neither. On a GPU a step waits for the loads before each call of advance; with these functions it does not: the GPU moves the
-       bodies, and the host learns of it some frames late. contacts is called once a frame, on the cpu never. It passes to `add`, with `to`,
-       all contacts that may act in the next `seconds`, while the bodies are about in `states` and the centre of mass of each stays in its
-       ball: 4 floats each, xyz and the radius, m, in the world. It returns 1; or 0: only the host can move them in this frame, for instance
-       because it holds one. After 1, passed is called for each substep instead of advance. */
+    /* Both or neither, beside advance and reset. On a GPU a step waits for the loads before each call of advance; with these functions it
+       does not: the GPU moves the bodies, and the host learns of it some frames late. contacts is called once or twice a frame, on the cpu
+       never. It passes to `add`, with `to`, all contacts that may act in the next `seconds`, while the bodies are about in `states` and the
+       centre of mass of each stays in its ball: 4 floats each, xyz and the radius, m, in the world. `add` copies them, and must not be
+       called when contacts has returned. It returns 1; or 0: only the host can move them in this frame, for instance because it holds one.
+       After 1, passed is called for each substep instead of advance. A contact that cannot be: no body moves in this frame, and the step
+       returns RIVULET_FAILED with a sentence about it. */
     int32_t (*contacts)(void* user, const rivulet_body_state* states, const float* balls, size_t count, double seconds,
                         rivulet_add_contact add, void* to);
     void (*passed)(void* user, double seconds);
-    /* May be NULL: then bodies are expected to move freely. As advance, from `from` (s, before now where negative) on, without an effect on
-       later calls: where the bodies will be under such loads. */
+    /* Beside contacts; NULL: bodies are expected to move freely. As advance, from `from` (s, before now where negative) on, without an
+       effect on later calls: where the bodies will be under such loads. */
     void (*predict)(void* user, const rivulet_body_load* loads, const float* gravity, double from, double seconds,
                     rivulet_body_state* states, size_t count);
 } rivulet_body_host;

@@ -108,7 +108,8 @@ WORDS = {"--device selects": "device selects", "but --backend is": "but backend 
          "a stop is asked with rivulet_context_stop": "a stop is asked with Context.stop()",
          "is set with rivulet_world_set_sources": "is set with World.set_sources()",
          "end that with path NULL first": "close its Recording first",
-         "mesh.uvs is NULL": "the Mesh has no uvs"}
+         "mesh.uvs is NULL": "the Mesh has no uvs",
+         "RIVULET_SOLID": "SOLID"}
 
 
 def call(name: str, *arguments: Any) -> None:

@@ -22,9 +22,12 @@ LINE = ctypes.CFUNCTYPE(None, c_void_p, c_int32, c_size_t, POINTER(c_float * 3),
 POSE = np.dtype([("position", np.float32, 3), ("rotation", np.float32, 4)])
 STATE = np.dtype(POSE.descr + [("velocity", np.float32, 3), ("spin", np.float32, 3)])
 LOAD = np.dtype([("force", np.float64, 3), ("torque", np.float64, 3)])
-CONTACT = np.dtype([("a", np.uint32), ("b", np.uint32), ("on_a", np.float32, 3), ("on_b", np.float32, 3), ("radius_a", np.float32),
-                    ("radius_b", np.float32), ("normal", np.float32, 3), ("velocity_b", np.float32, 3), ("friction", np.float32),
-                    ("restitution", np.float32)])
+# rivulet_body_contact, and what a caller fills of it.
+CONTACT_ROW = np.dtype([("size", np.uintp), ("a", np.uint32), ("b", np.uint32), ("on_a", np.float32, 3), ("on_b", np.float32, 3),
+                        ("radius_a", np.float32), ("radius_b", np.float32), ("normal", np.float32, 3), ("velocity_b", np.float32, 3),
+                        ("spin_b", np.float32, 3), ("centre_b", np.float32, 3), ("seconds_b", np.float64), ("friction", np.float32),
+                        ("restitution", np.float32)])
+CONTACT = np.dtype(CONTACT_ROW.descr[1:])
 SOLID = 0x7fffffff
 SAMPLE = np.dtype([("density", np.float32), ("velocity", np.float32, 3), ("gradient", np.float32, 3)])
 RAY = np.dtype([("origin", np.float32, 3), ("direction", np.float32, 3), ("reach", np.float32)])

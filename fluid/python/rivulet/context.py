@@ -109,8 +109,8 @@ class Context(Handle):
         (x y z w), velocity (m/s) and spin (rad/s), by loads["force"] (N) and loads["torque"] (N m); reset(states) gets the states
         of t = 0; added(id, state) and removed(id), if it has them, are called when bodies come and go. With contacts(states, balls, seconds)
         and passed(seconds) a GPU moves the bodies and does not wait for advance: contacts returns the contacts that may act in a frame,
-        while each centre of mass stays in its ball (n, 4): xyz and the radius (m), as an array of type CONTACT, whose b is SOLID for a wall;
-        None: only the host can move them. predict(loads, gravity, start, seconds, states) is as advance, from `start` (s from now) on, without
+        while each centre of mass stays in its ball (n, 4): xyz and the radius (m), as an array of type CONTACT (its fields are those of
+        rivulet_body_contact in docs/api.md), whose b is SOLID for a wall; None: only the host can move them. predict(loads, gravity, start, seconds, states) is as advance, from `start` (s from now) on, without
         an effect on later calls. Its arrays are copies, and what it raises comes out of the call. None: bodies collide with nothing but fluid.
         skins_bring: m^3 of water that drops of skins bring in 10 s, see World.step_skins; 0: none.
         BadInput: an unknown key, or a value out of its range."""

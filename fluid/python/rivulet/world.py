@@ -84,9 +84,13 @@ def _host_of(host: Any, raised: Raised) -> c.BodyHost:
             found = host.contacts(view_of(states, c.STATE, count).copy(), view_of(balls, np.float32, 4 * count).reshape(-1, 4).copy(), seconds)
             if found is None:
                 return
-            rows = np.ascontiguousarray(found, c.CONTACT).reshape(-1)
+            theirs = np.asarray(found, c.CONTACT).reshape(-1)
+            rows = np.empty(len(theirs), c.CONTACT_ROW)
+            rows["size"] = c.CONTACT_ROW.itemsize
+            for name in theirs.dtype.names:
+                rows[name] = theirs[name]
             for k in range(len(rows)):
-                add(to, rows.ctypes.data + k * c.CONTACT.itemsize)
+                add(to, rows.ctypes.data + k * rows.itemsize)
             known = True
         raised.guard(work)
         return int(known)
@@ -105,7 +109,10 @@ def _host_of(host: Any, raised: Raised) -> c.BodyHost:
         raised.guard(work)
 
     def given(name: str, kind: Any, function: Any) -> Any:
-        return kind(function) if hasattr(host, name) else kind(0)
+        theirs = getattr(host, name, None)
+        if theirs is not None and not callable(theirs):
+            raise BadInput(f"body_host.{name} is {theirs!r}: give a function, or leave it out")
+        return kind(0) if theirs is None else kind(function)
 
     return struct(c.BodyHost, advance=c.ADVANCE(advance), reset=c.RESET(reset), added=given("added", c.ADDED, added),
                   removed=given("removed", c.REMOVED, removed), contacts=given("contacts", c.CONTACTS, contacts),

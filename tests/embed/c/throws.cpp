@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "check.h"
@@ -214,6 +215,82 @@ void nothingChangesInAStop(rivulet_context* context) {
     rivulet_world_destroy(world);
 }
 
+// The functions by which a GPU moves bodies: `fails` is the one that does.
+enum class Fails { none, contacts, adding, passed, predict };
+Fails fails = Fails::none;
+int32_t contacts(void*, const rivulet_body_state*, const float*, size_t, double, rivulet_add_contact add, void* to) {
+    if (fails == Fails::contacts) throw std::runtime_error("the engine lost its contacts");
+    rivulet_body_contact floor{};
+    floor.size = sizeof floor;
+    floor.b = RIVULET_SOLID;
+    floor.normal[1] = 1;
+    for (int k = 0; k < (fails == Fails::adding ? 9999 : 1); ++k) {
+        if (k == 999) allocationsLeft = 0;
+        add(to, &floor);
+    }
+    allocationsLeft = -1;
+    return 1;
+}
+void passed(void*, double) {
+    if (fails == Fails::passed) throw std::runtime_error("the engine lost its clock");
+}
+void predict(void*, const rivulet_body_load*, const float*, double, double, rivulet_body_state*, size_t) {
+    if (fails == Fails::predict) throw std::runtime_error("the engine sees nothing");
+}
+
+// What a step's error says of the bodies is where they are.
+void theGpuMovesThem() {
+    rivulet_context* context = nullptr;
+    rivulet_context_options options{};
+    options.size = sizeof options;
+    options.backend = "cl";
+    if (rivulet_context_create(&options, &context, &why) != RIVULET_OK) {
+        printf("no device of OpenCL: %s\n", why.message);
+        return;
+    }
+    rivulet_body_host host{};
+    host.size = sizeof host;
+    host.advance = stays;
+    host.reset = reset;
+    host.contacts = contacts;
+    host.passed = passed;
+    host.predict = predict;
+    rivulet_body body = sampled(kSamples);
+    body.pose.position[1] = 0.7F;
+    rivulet_world_options scene{};
+    scene.size = sizeof scene;
+    scene.json = R"({"fluid": {"spacing": 0.05, "box": {"max": [0.5, 0.8, 0.5]}, "blocks": [{"max": [0.5, 0.1, 0.5]}]}})";
+    scene.bodies = &body;
+    scene.bodies_count = 1;
+    scene.body_host = &host;
+    rivulet_world* world = nullptr;
+    DONE(rivulet_world_create(context, &scene, &world, &why));
+    const std::pair<Fails, const char*> all[] = {
+        {Fails::contacts, "body_host.contacts threw an exception: the engine lost its contacts; the bodies stay where they are"},
+        {Fails::adding, "body_host.contacts added more contacts than there is memory for; the bodies stay where they are"},
+        {Fails::passed, "body_host.passed threw an exception: the engine lost its clock; the GPU has moved the bodies nevertheless"},
+        {Fails::predict, "body_host.predict threw an exception: the engine sees nothing; the bodies stay where they are"}};
+    rivulet_body_state before, after;
+    for (const auto& [what, sentence] : all) {
+        DONE(rivulet_world_step(world, nullptr, 1.0 / 60, &why));
+        DONE(rivulet_world_bodies(world, &before, 1, &why));
+        fails = what;
+        CHECK(rivulet_world_step(world, nullptr, 1.0 / 60, &why) == RIVULET_FAILED);
+        fails = Fails::none;
+        CHECK(strcmp(why.message, sentence) == 0);
+        if (strcmp(why.message, sentence) != 0) printf("%s\n", why.message);
+        DONE(rivulet_world_bodies(world, &after, 1, &why));
+        const bool moved = strstr(sentence, "has moved") != nullptr;
+        CHECK((after.pose.position[1] < before.pose.position[1]) == moved);
+        CHECK(moved || memcmp(&before, &after, sizeof before) == 0);
+        DONE(rivulet_world_step(world, nullptr, 1.0 / 60, &why));
+        DONE(rivulet_world_bodies(world, &before, 1, &why));
+        CHECK(before.pose.position[1] < after.pose.position[1]);  // it falls on
+    }
+    rivulet_world_destroy(world);
+    rivulet_context_destroy(context);
+}
+
 }  // namespace
 
 void* operator new(size_t bytes) { return allocated(bytes); }
@@ -275,6 +352,7 @@ int main() {
     theEngineRefuses(context);
     nothingChangesInAStop(context);
     rivulet_context_destroy(context);
+    theGpuMovesThem();
     printf("%s\n", failures == 0 ? "all holds" : "something does not hold");
     return failures == 0 ? 0 : 1;
 }

@@ -17,8 +17,8 @@ WITHOUT_STRUCT = {"jobs": "a job system in Python would hold each thread of the 
                   "memory": "as jobs; NumPy has no allocator that another library may use",
                   "drawing": "of rivulet_renderer", "renderer": "a renderer that is called within a draw is written in C, as its OpenGL calls are",
                   "error": "an exception"}
-AS_ARRAYS = {"pose": "POSE", "body_state": "STATE", "body_load": "LOAD", "body_contact": "CONTACT", "sample": "SAMPLE", "ray": "RAY", "hit": "HIT", "volume": "VOLUME",
-             "volume_count": "COUNT", "load": "LOADS", "light": "LIGHT"}
+AS_ARRAYS = {"pose": "POSE", "body_state": "STATE", "body_load": "LOAD", "body_contact": "CONTACT_ROW", "sample": "SAMPLE", "ray": "RAY", "hit": "HIT",
+             "volume": "VOLUME", "volume_count": "COUNT", "load": "LOADS", "light": "LIGHT"}
 root = pathlib.Path(sys.argv[1]).resolve()
 headers = "\n".join(path.read_text() for path in sorted((root / "fluid/capi").glob("rivulet*.h")))
 headers = re.sub(r"/\*.*?\*/", "", headers, flags=re.S)

@@ -287,7 +287,6 @@ TEST_P(BodyContacts, DucksWaitForNothing) {
     LateDevice late(*gpu->device, scene->bodies.size());
     auto session = Session::create(*scene, late, {});
     ASSERT_TRUE(session) << session.error().message;
-    (*session)->drawNothing();
     for (int frame = 0; frame < 24; ++frame) {
         (*session)->step(kFrame, false);
         late.frameEnds();

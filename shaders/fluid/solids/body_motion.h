@@ -3,7 +3,7 @@
 CONSTANT(float, MOST, 1.0e6f);       // kMostDistance, kMostSpeed
 CONSTANT(float, MOST_LOAD, 1.0e36f);  // of a sum of squares: beyond it a load is not finite
 
-FN vec3 turnedBy(vec4 q, vec3 a) { return a + 2.0f * cross(q.xyz, cross(q.xyz, a) + q.w * a); }
+#include "shaders/fluid/solids/turned.h"
 
 FN vec4 conjugateOf(vec4 q) { return vec4(-q.x, -q.y, -q.z, q.w); }
 

@@ -78,6 +78,7 @@ struct Case {
 const Case kRain{"rain_on_spot", {"flow.0.mapSize=256"}, 12, true};
 const Case kShower{"shower", {"flow.0.mapSize=256", "fluid.spacing=0.01", "emitters.0.start=0"}, 18, true};
 const Case kBobs{"", {}, 3, false, 0.72F};
+const Case kWetBall{"", {"fluid.wetness.on=true"}, 3, false, 0.72F};
 const Case kDropped{"", {}, 15, false, 1.26F};  // 0.5 m above the water: it hits it in frame 19
 // A head that speaks in the rain.
 const Case kCrying{"crying", {"flow.0.mapSize=256", "flow.0.sources.3.rate=60000"}, 12, true};
@@ -185,11 +186,11 @@ class Waits : public ::testing::Test {
 };
 
 // A GPU waits for no frame of these: particles of all methods with foam, moving and deforming solids, drops and wetness on skins, rain on
-// them, a ball that bobs or falls into a pool, ducks that touch each other and the walls.
+// them, a ball that bobs, also with a wet surface, or falls into a pool, ducks that touch each other and the walls.
 TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
     for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}},
                           Case{"paddle_wheel", {"fluid.spacing=0.08", "fluid.method=dfsph"}}, Case{"waving_sheet", {"fluid.spacing=0.08"}},
-                          Case{"cold_bottle", {}}, kRain, kShower, kCrying, kBobs, kDropped, kDucks}) {
+                          Case{"cold_bottle", {}}, kRain, kShower, kCrying, kBobs, kWetBall, kDropped, kDucks}) {
         SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt);
         const std::unique_ptr<Device> device = makeGlDevice(files_, {});
         uint64_t bodyWaits = 0;
@@ -202,7 +203,7 @@ TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
 // The same on OpenCL, as a window draws it.
 TEST_F(Waits, FramesOnOpenClWaitForWhatTheTableNamesAlone) {
     for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}}, kRain, kShower, kCrying,
-                          kBobs, kDropped, kDucks}) {
+                          kBobs, kWetBall, kDropped, kDucks}) {
         SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt);
         Result<std::unique_ptr<Device>> device = makeClDevice(files_);
         if (!device && testing::mayLackOpenGl()) GTEST_SKIP() << device.error().message;

@@ -59,12 +59,13 @@ void WetPasses::reset() {
 }
 
 void WetPasses::run(const WetnessParams& params, const StepParams& step, const NeighborGrid& grid, const Particles& particles,
-                    std::span<const Pose> rigid, std::span<const BodyState> bodies, double seconds) {
+                    std::span<const Pose> rigid, std::span<const BodyState> bodies, const BodyRows& rows, double seconds) {
     const Buffer &before = wet_[now_], &next = wet_[1 - now_];
     const vec3 gravity(step.gravity);
     const float g = glm::length(gravity);
     for (const WetSolid& solid : surface_->solids) {
-        const Pose pose = solid.poseAmong(rigid, bodies);
+        const bool onDevice = solid.solid.on == ProbeOn::body && rows.current;
+        const Pose pose = onDevice ? Pose{} : solid.poseAmong(rigid, bodies);
         const mat3 turn = glm::mat3_cast(pose.rotation);
         const auto row = [&](int k) { return vec4(turn[0][k], turn[1][k], turn[2][k], pose.position[k]); };
         WetStep w{};
@@ -86,7 +87,10 @@ void WetPasses::run(const WetnessParams& params, const StepParams& step, const N
         w.wetsUntil = kWetsUntil * step.spacing;
         w.run = static_cast<float>(1 - std::exp(-double{kRunSpeed} * seconds / double{solid.cell}));
         w.reach = params.runs;
-        device_->run(kernel_, w, {&grid.cellStart(), &particles.positionNext, &points_, &cells_, &before, &next}, solid.points);
+        w.body = onDevice ? solid.solid.index : NO_BODY;
+        device_->run(kernel_, w,
+                     {&grid.cellStart(), &particles.positionNext, &points_, &cells_, &before, &next, onDevice ? rows.rows : &points_},
+                     solid.points);
     }
     now_ = 1 - now_;
 }

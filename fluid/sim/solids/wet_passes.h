@@ -8,6 +8,7 @@
 
 #include "engine/compute/device.h"
 #include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/solids/body_states.h"
 #include "fluid/sim/solids/wet_surface.h"
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/particles.h"
@@ -24,9 +25,10 @@ class WetPasses {
     Result<WetPasses> with(std::span<const WetSurface::Part> parts, float spacing) const;
     void reset();  // all dry
 
-    // At the end of a frame of `seconds`: positionNext, in the order of the last sort. The poses are of the rigid solids and the bodies.
+    // At the end of a frame of `seconds`: positionNext, in the order of the last sort. The poses are of the rigid solids and the bodies, of
+    // these in `rows` where they are current.
     void run(const WetnessParams& params, const StepParams& step, const NeighborGrid& grid, const Particles& particles,
-             std::span<const Pose> rigid, std::span<const BodyState> bodies, double seconds);
+             std::span<const Pose> rigid, std::span<const BodyState> bodies, const BodyRows& rows, double seconds);
 
     // The wetness as part of a saved state. Error: as WorldState::take; another number of points, values that are none.
     void save(WorldState& state) const;

@@ -283,10 +283,7 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     }
     if (!p.ellipsoids) ellipsoids.forget();
     if (foam && simulated > 0) foam->run(p, step, *grid, particles, solids, simulated);
-    if (wet && simulated > 0) {
-        bodies.settle();
-        wet->run(p.wetness, step, *grid, particles, solids.poses(), bodies.states(), simulated);
-    }
+    if (wet && simulated > 0) wet->run(p.wetness, step, *grid, particles, solids.poses(), bodies.states(), bodies.rows(), simulated);
     const double lost = stepper.end(simulated);
     // The rounding of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {

@@ -21,8 +21,8 @@ void LateView::dropOlder() {
     }
 }
 
-// To where they were: their states have arrived before the particles. A body that has no state, since the world has fewer bodies now,
-// stays.
+// To where they were: their states have arrived before the particles. A body that has no state, since the world is another one with fewer
+// bodies by now, stays.
 void LateView::moveBodies(Frame& frame, const FluidWorld& world) {
     if (!std::exchange(frame.moved, false)) return;
     const std::optional<std::vector<BodyState>> states = world.bodiesAt(frame.time);

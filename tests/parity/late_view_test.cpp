@@ -125,6 +125,59 @@ TEST_F(LateViewTest, BodiesAreWhereTheyWereAtThatTime) {
         });
 }
 
+// A session of one ball follows on one of two, at the same time and on the same device, while a picture of both balls is on its way: the
+// ball of which it has no state stays where it was expected.
+TEST_F(LateViewTest, ABodyThatTheNextSessionLacksStays) {
+    Result<TestGpu> cl = makeTestGpu("cl");
+    if (!cl) GTEST_SKIP() << cl.error().message;
+    Device& device = *cl->device;
+    const auto sessionOf = [&](const std::string& bodies) {
+        const std::string path = testing::TempDir() + "late_view_balls.json";
+        std::ofstream(path) << R"({"name": "balls", "doc": "", "fluid": {"method": "pbf", "spacing": 0.08,
+            "box": {"max": [1.6, 2, 1.6]}, "blocks": [{"max": [1.6, 0.64, 1.6]}]}, "bodies": [)"
+                            << bodies << "]}";
+        const Result<SceneFile> scene = loadScene(path, {});
+        EXPECT_TRUE(scene) << scene.error().message;
+        auto session = Session::create(*scene, device, {});
+        EXPECT_TRUE(session) << session.error().message;
+        return std::move(*session);
+    };
+    const std::string first = R"({"shape": "sphere", "radius": 0.12, "density": 400, "position": [0.5, 1.26, 0.8]})";
+    const std::string second = R"({"shape": "sphere", "radius": 0.12, "density": 400, "position": [1.1, 1.26, 0.8]})";
+    const auto both = sessionOf(first + ", " + second), one = sessionOf(first);
+    constexpr size_t kBytes = size_t{64} << 20;
+    Result<Buffer> from = device.allocate(kBytes), to = device.allocate(kBytes);
+    ASSERT_TRUE(from && to);
+    device.fill(*from, 0);
+    const auto workLong = [&] {  // what is read behind it arrives later
+        for (int k = 0; k < 8; ++k) device.copy(*from, *to, kBytes);
+    };
+    const auto placeOf = [](const Scene& solids, int body) {
+        const auto node = std::ranges::find(solids.nodes(), body, &Node::body);
+        return node == solids.nodes().end() ? mat4(0.0F) : node->local;
+    };
+    FluidUpload upload;
+    LateView late;
+    for (int k = 0; k < 7; ++k) {
+        for (Session* session : {both.get(), one.get()}) session->step(1.0 / 60, false);
+        if (k == 6) workLong();
+        const auto shown = late.show(upload, *both);
+        ASSERT_TRUE(shown) << shown.error().message;
+        if (k == 6) ASSERT_LT(shown->time, both->time());
+        if (k == 5) device.finish(), device.poll();
+    }
+    device.finish();
+    device.poll();
+    const mat4 expected = placeOf(both->solids(), 1);
+    ASSERT_EQ(one->world().bodiesAt(both->time()).value().size(), 1U);
+    workLong();
+    const auto shown = late.show(upload, *one);
+    ASSERT_TRUE(shown) << shown.error().message;
+    ASSERT_EQ(shown->time, both->time());
+    ASSERT_EQ(std::ranges::count_if(shown->solids->nodes(), [](const Node& n) { return n.body >= 0; }), 2);
+    EXPECT_EQ(placeOf(*shown->solids, 1), expected);
+}
+
 // A head that speaks: its vertices are those of the time that is shown.
 TEST_F(LateViewTest, MeshesHaveTheShapeOfThatTime) {
     const Result<SceneFile> scene =

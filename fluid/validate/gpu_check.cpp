@@ -22,19 +22,7 @@ constexpr double kStep = 1.0 / 1600;  // s: one substep for every method at this
 // spacing.
 constexpr double kPositionLimit = 0.01;  // spacings
 constexpr double kSpeedLimit = 0.01;     // of the speed of a fall by the height of the water
-
-FluidParams checkedWater(const char* method) {
-    FluidParams p;
-    p.method = method;
-    p.spacing = 0.05F;
-    p.box.max = vec3(1.0F, 1.2F, 1.0F);
-    p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
-    p.soundSpeed = 15;
-    p.pbf.reach = p.dfsph.reach = 1;
-    p.dfsph.tolerance = 1.0e-6F;
-    p.dfsph.maxIterations = 3;
-    return p;
-}
+constexpr float kSpacing = 0.05F;        // m
 
 struct State {
     std::vector<vec4> position, velocity;  // by id
@@ -72,6 +60,19 @@ double farthest(const std::vector<vec4>& a, const std::vector<vec4>& b) {
 
 }  // namespace
 
+FluidParams oneStepDam(const char* method, float spacing) {
+    FluidParams p;
+    p.method = method;
+    p.spacing = spacing;
+    p.box.max = vec3(1.0F, 1.2F, 1.0F);
+    p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
+    p.soundSpeed = 15;
+    p.pbf.reach = p.dfsph.reach = 1;
+    p.dfsph.tolerance = 1.0e-6F;
+    p.dfsph.maxIterations = 3;
+    return p;
+}
+
 std::string GpuFinding::sentence() const {
     return passed() ? fmt::format("{}: {} agree within {:.2g} {}", device, what, difference, unit)
                     : fmt::format("{}: {} differ by {:.3g} {}, allowed are {:.2g}", device, what, difference, unit, limit);
@@ -79,13 +80,13 @@ std::string GpuFinding::sentence() const {
 
 Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu) {
     std::vector<GpuFinding> found;
-    FluidParams forces = checkedWater("dfsph");
+    FluidParams forces = oneStepDam("dfsph", kSpacing);
     forces.forces.tension = 0.07F;
     forces.forces.vorticity = 0.1F;
     forces.viscosity = 1.0e-3F;
-    const std::pair<const char*, FluidParams> cases[] = {{"wcsph", checkedWater("wcsph")},
-                                                         {"pbf", checkedWater("pbf")},
-                                                         {"dfsph", checkedWater("dfsph")},
+    const std::pair<const char*, FluidParams> cases[] = {{"wcsph", oneStepDam("wcsph", kSpacing)},
+                                                         {"pbf", oneStepDam("pbf", kSpacing)},
+                                                         {"dfsph", oneStepDam("dfsph", kSpacing)},
                                                          {"dfsph with tension and vorticity", forces}};
     for (const auto& [name, params] : cases) {
         const Result<State> here = stateAfter(cpu, params);

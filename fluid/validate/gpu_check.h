@@ -20,6 +20,9 @@ struct GpuFinding {
     std::string sentence() const;                        // "gl: pbf: positions after 10 steps differ from the cpu's by 3.1 spacings; ..."
 };
 
+// A dam break with particles `spacing` m apart in which a frame of 1/1600 s is one step on every device, for any method.
+FluidParams oneStepDam(const char* method, float spacing);
+
 // Steps small worlds, one for each method and one with all forces, on both. Error: a kernel does not compile, or memory is exhausted.
 Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu);
 

@@ -33,7 +33,38 @@ class BodiesAhead : public testing::TestWithParam<const char*> {};
 
 // ---- the kernel ----
 
-class AdvanceBodies : public testing::TestWithParam<const char*> {};
+class AdvanceBodies : public testing::TestWithParam<const char*> {
+  protected:
+    void SetUp() override {
+        Result<TestGpu> gpu = deviceOf(GetParam());
+        if (!gpu) GTEST_SKIP() << gpu.error().message;
+        gpu_ = std::move(*gpu);
+        const Result<Kernel> kernel = device().kernel("fluid/solids/advance_bodies");
+        ASSERT_TRUE(kernel) << kernel.error().message;
+        kernel_ = *kernel;
+    }
+    Device& device() { return *gpu_.device; }
+    void write(std::span<const LoadRow> loads, std::span<const BodyMotion> motions, std::span<const DeviceBody> bodies) {
+        Result<Buffer> sums = device().allocate(loads.size_bytes()), by = device().allocate(motions.size_bytes()),
+                       moved = device().allocate(bodies.size_bytes());
+        ASSERT_TRUE(sums && by && moved);
+        buffers_ = {std::move(*sums), std::move(*by), std::move(*moved)};
+        device().writeAll<LoadRow>(buffers_[0], loads);
+        device().writeAll<BodyMotion>(buffers_[1], motions);
+        device().writeAll<DeviceBody>(buffers_[2], bodies);
+        count_ = bodies.size();
+    }
+    std::vector<DeviceBody> advanced(const StepParams& step) {
+        device().run(kernel_, step, {&buffers_[0], &buffers_[1], &buffers_[2]}, static_cast<uint32_t>(count_));
+        return device().readAll<DeviceBody>(buffers_[2], count_);
+    }
+
+  private:
+    TestGpu gpu_;
+    Kernel kernel_;
+    std::array<Buffer, 3> buffers_;  // loads, motions, bodies
+    size_t count_ = 0;
+};
 
 float distance(const quat& a, const quat& b) { return std::min(glm::length(a - b), glm::length(a + b)); }
 
@@ -41,11 +72,6 @@ float distance(const quat& a, const quat& b) { return std::min(glm::length(a - b
 // of FreeBodies and BodyLoads, which are in double, by rounding. A load that is not finite moves nothing; a body without mass does not
 // move, and one that the water does not meet falls freely.
 TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
-    Result<TestGpu> gpu = deviceOf(GetParam());
-    if (!gpu) GTEST_SKIP() << gpu.error().message;
-    Device& device = *gpu->device;
-    const Result<Kernel> kernel = device.kernel("fluid/solids/advance_bodies");
-    ASSERT_TRUE(kernel) << kernel.error().message;
     constexpr uint32_t kBodies = 200;  // 0: no mass; 1: meets no water; 2: its load is not finite
     std::mt19937 random(7);
     const auto any = [&random] { return std::uniform_real_distribution<float>(-1, 1)(random); };
@@ -90,16 +116,12 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
     StepParams step{};
     step.dt = 2.0e-3F;
     step.gravity = vec4(1, -9.81F, 0.5F, 0);
-    Result<Buffer> sums = device.allocate(partial.size() * sizeof(LoadRow)), moved = device.allocate(rows.size() * sizeof(DeviceBody)),
-                   by = device.allocate(motions.size() * sizeof(BodyMotion));
-    ASSERT_TRUE(sums && moved && by);
-    device.writeAll<LoadRow>(*sums, partial);
-    device.writeAll<DeviceBody>(*moved, rows);
-    device.writeAll<BodyMotion>(*by, motions);
+    ASSERT_NO_FATAL_FAILURE(write(partial, motions, rows));
     double way = 0, speed = 0, spin = 0, turn = 0, fastTurn = 0, pending = 0;
     constexpr int kSteps = 40;
+    std::vector<DeviceBody> got;
     for (int n = 0; n < kSteps; ++n) {
-        device.run(*kernel, step, {&*sums, &*by, &*moved}, kBodies);
+        got = advanced(step);
         std::vector<BodyLoad> now(kBodies);
         for (uint32_t k = 0; k < kBodies; ++k) {
             if (!bodies[k].meetsWater) continue;
@@ -112,7 +134,6 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
         }
         const BodyHost h = host.host();
         h.advance(h.self, now, vec3(step.gravity), double{step.dt}, states);
-        const std::vector<DeviceBody> got = device.readAll<DeviceBody>(*moved, kBodies);
         for (uint32_t k = 0; k < kBodies; ++k) {
             const DeviceBody& d = got[k];
             const BodyState& s = states[k];
@@ -139,33 +160,21 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
     EXPECT_LT(turn, 1.0e-5);
     EXPECT_LT(fastTurn, 2.0e-3) << "four turns, about the unstable axis, too";
     EXPECT_LT(pending, 1.0e-4);
-    const DeviceBody still = device.readAll<DeviceBody>(*moved, 1)[0];
-    EXPECT_EQ(vec3(still.position), bodies[0].state.pose.position) << "without mass";
-    EXPECT_EQ(still.rotation, rows[0].rotation);
+    EXPECT_EQ(vec3(got[0].position), bodies[0].state.pose.position) << "without mass";
+    EXPECT_EQ(got[0].rotation, rows[0].rotation);
 }
 // A finite load that would make a body impossibly fast: it keeps its state, and that is noted.
 TEST_P(AdvanceBodies, KeepsTheStateOfABodyWhoseNextOneIsImpossible) {
-    Result<TestGpu> gpu = deviceOf(GetParam());
-    if (!gpu) GTEST_SKIP() << gpu.error().message;
-    Device& device = *gpu->device;
-    const Result<Kernel> kernel = device.kernel("fluid/solids/advance_bodies");
-    ASSERT_TRUE(kernel) << kernel.error().message;
     std::vector<LoadRow> partial(LOAD_THREADS);
     partial[3].force.x = 1.0e16F;
     DeviceBody row{};
     row.position = vec4(1, 2, 3, 0);
     row.rotation = vec4(0, 0, 0, 1);
     const BodyMotion motion{vec4(1, 1, 1, 1), vec4(1, 2, 3, 1), 0.0F, 10.0F, 1, 0};
-    Result<Buffer> sums = device.allocate(partial.size() * sizeof(LoadRow)), moved = device.allocate(sizeof row),
-                   by = device.allocate(sizeof motion);
-    ASSERT_TRUE(sums && moved && by);
-    device.writeAll<LoadRow>(*sums, partial);
-    device.writeAll<DeviceBody>(*moved, std::span(&row, 1));
-    device.writeAll<BodyMotion>(*by, std::span(&motion, 1));
+    ASSERT_NO_FATAL_FAILURE(write(partial, std::span(&motion, 1), std::span(&row, 1)));
     StepParams step{};
     step.dt = 1.0e-3F;
-    device.run(*kernel, step, {&*sums, &*by, &*moved}, 1);
-    const DeviceBody got = device.readAll<DeviceBody>(*moved, 1)[0];
+    const DeviceBody got = advanced(step)[0];
     EXPECT_EQ(vec3(got.position), vec3(1, 2, 3));
     EXPECT_EQ(vec3(got.velocity), vec3(0.0F));
     EXPECT_EQ(got.faults, BODY_MISLED);

@@ -11,6 +11,7 @@
 #include "engine/gpu/device_gl.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
+#include "fluid/validate/gpu_check.h"
 
 namespace rivulet {
 
@@ -41,18 +42,10 @@ inline std::vector<vec3> positions(FluidWorld& world) {
     return all;
 }
 
-// A dam break of 8,192 particles in which a frame of 1/1600 s is one step on every device, for any method.
+// A dam break of 8,192 particles, see oneStepDam.
 inline FluidParams parityDam(const char* method) {
-    FluidParams p;
-    p.method = method;
-    p.spacing = 0.03125F;
-    p.box.max = vec3(1.0F, 1.2F, 1.0F);
-    p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
-    p.soundSpeed = 15;
+    FluidParams p = oneStepDam(method, 0.03125F);
     p.cfl = 0.8F;
-    p.pbf.reach = p.dfsph.reach = 1;
-    p.dfsph.tolerance = 1.0e-6F;
-    p.dfsph.maxIterations = 3;
     return p;
 }
 

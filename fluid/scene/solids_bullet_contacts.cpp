@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -29,6 +30,7 @@ constexpr float kBand = 0.15F;      // of a body's size, beside what it moves in
 constexpr float kSame = 1.0e-3F;    // of a body's size: points that are so near are one
 constexpr float kFlat = 5.0e-3F;    // of a body's size: a corner that stands out by less is none
 constexpr float kAlike = 0.99999F;  // cosine: normals of one plane
+constexpr float kWrong = 0.02F;     // of a body's size: more than what is reported, they do not overlap along the reported direction
 constexpr float kOfFace = 0.9F;     // cosine between the normals of a triangle and of a point of it where a body overlaps it
 
 // Of a contact in the world: the points of both surfaces, the normal towards a, and the distance (negative where they overlap).
@@ -36,6 +38,44 @@ struct Touch {
     vec3 onA, onB, normal;
     float distance;
 };
+
+// The faces of a shape; null where it has none.
+const btConvexPolyhedron* facesOf(const btCollisionObjectWrapper& of) {
+    const btCollisionShape& shape = *of.getCollisionShape();
+    if (!shape.isPolyhedral() || shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) return nullptr;
+    return static_cast<const btPolyhedralConvexShape&>(shape).getConvexPolyhedron();
+}
+// m, of its surface beyond its faces.
+float marginOf(const btCollisionObjectWrapper& of) {
+    const btCollisionShape& shape = *of.getCollisionShape();
+    return shape.getShapeType() == BOX_SHAPE_PROXYTYPE ? 0 : shape.getMargin();  // the corners of a box have it
+}
+
+// How far two shapes with faces are apart along a unit vector from b to a (m, negative where they overlap), and where a is nearest to b.
+struct Apart {
+    float distance = -std::numeric_limits<float>::infinity();
+    btVector3 direction{0, 1, 0}, onA{0, 0, 0};
+};
+Apart apartAlong(const btVector3& direction, const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) {
+    btScalar lowA = 0, highA = 0, lowB = 0, highB = 0;
+    btVector3 nearest, lowest, farthest, highest;
+    facesOf(a)->project(a.getWorldTransform(), direction, lowA, highA, nearest, farthest);
+    facesOf(b)->project(b.getWorldTransform(), direction, lowB, highB, lowest, highest);
+    return {lowA - highB - marginOf(a) - marginOf(b), direction, nearest - marginOf(a) * direction};
+}
+// Along the normal of a face along which they overlap least.
+Apart apartByFaces(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) {
+    Apart best;
+    for (const auto& [of, sign] : {std::pair(&a, -1.0F), std::pair(&b, 1.0F)}) {
+        const btConvexPolyhedron& faces = *facesOf(*of);
+        for (int k = 0; k < faces.m_faces.size(); ++k) {
+            const btScalar* plane = faces.m_faces[k].m_plane;
+            const btVector3 outward = of->getWorldTransform().getBasis() * btVector3(plane[0], plane[1], plane[2]);
+            if (const Apart apart = apartAlong(sign * outward.normalized(), a, b); apart.distance > best.distance) best = apart;
+        }
+    }
+    return best;
+}
 
 // Faces of two shapes, clipped against each other. Bullet itself clips only shapes that overlap; of others it reports one point.
 class Clipped : public btDiscreteCollisionDetectorInterface::Result {
@@ -77,15 +117,6 @@ class Clipped : public btDiscreteCollisionDetectorInterface::Result {
   private:
     Clipped(float cosine, float marginA, float marginB, std::vector<Touch>& touches)
         : cosine_(cosine), marginA_(marginA), marginB_(marginB), touches_(&touches) {}
-    static const btConvexPolyhedron* facesOf(const btCollisionObjectWrapper& of) {
-        const btCollisionShape& shape = *of.getCollisionShape();
-        if (!shape.isPolyhedral() || shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) return nullptr;
-        return static_cast<const btPolyhedralConvexShape&>(shape).getConvexPolyhedron();
-    }
-    static float marginOf(const btCollisionObjectWrapper& of) {
-        const btCollisionShape& shape = *of.getCollisionShape();
-        return shape.getShapeType() == BOX_SHAPE_PROXYTYPE ? 0 : shape.getMargin();  // the corners of a box have it
-    }
     float cosine_, marginA_, marginB_;
     std::vector<Touch>* touches_;
 };
@@ -103,15 +134,27 @@ class Closest : public btCollisionWorld::ContactResultCallback {
         const vec3 one = fromBullet(p.m_positionWorldOnA), other = fromBullet(p.m_positionWorldOnB), n = fromBullet(p.m_normalWorldOnB);
         if (!(glm::dot(n, n) > 0.5F)) return 0;
         const bool same = first->getCollisionObject() == a_;
+        const btCollisionObjectWrapper &of = same ? *first : *second, &by = same ? *second : *first;
+        const btVector3 direction = same ? p.m_normalWorldOnB : -p.m_normalWorldOnB;
+        const Parts parts{of.getCollisionShape(), by.getCollisionShape(), part, otherPart};
+        const bool again = std::exchange(last_, parts) == parts;  // those are clipped
         // Where they overlap, Bullet knows no direction out of a flat triangle: the corners do.
-        if (!ball_ && p.m_distance1 < 0 && std::abs(glm::dot(n, normalOf(same ? *second : *first, n))) < kOfFace) return 0;
-        touches_->push_back(same ? Touch{one, other, n, p.m_distance1} : Touch{other, one, -n, p.m_distance1});
-        if (parts_) return 0;
-        const Parts parts{first->getCollisionShape(), second->getCollisionShape(), part, otherPart};
-        if (parts == last_) return 0;  // those are clipped
-        last_ = parts;
-        Clipped::add(same ? *first : *second, same ? *second : *first, same ? p.m_normalWorldOnB : -p.m_normalWorldOnB,
-                     m_closestDistanceThreshold, *touches_);
+        if (!ball_ && p.m_distance1 < 0 && std::abs(glm::dot(n, normalOf(by, n))) < kOfFace) return 0;
+        // Of two faces that overlap a little, Bullet now and then reports a direction along which they overlap by their length, and then
+        // points of other faces.
+        if (!again)
+            wrong_ = facesOf(of) != nullptr && facesOf(by) != nullptr &&
+                     apartAlong(direction, of, by).distance < p.m_distance1 - kWrong * of.getCollisionShape()->getAngularMotionDisc();
+        if (wrong_ && again) return 0;
+        if (wrong_) {
+            const Apart apart = apartByFaces(of, by);
+            const vec3 on = fromBullet(apart.onA), along = fromBullet(apart.direction);
+            touches_->push_back({on, on - apart.distance * along, along, apart.distance});
+            Clipped::add(of, by, apart.direction, m_closestDistanceThreshold, *touches_);
+            return 0;
+        }
+        touches_->push_back({same ? one : other, same ? other : one, fromBullet(direction), p.m_distance1});
+        if (!parts_ && !again) Clipped::add(of, by, direction, m_closestDistanceThreshold, *touches_);
         return 0;
     }
 
@@ -129,6 +172,7 @@ class Closest : public btCollisionWorld::ContactResultCallback {
         bool operator==(const Parts&) const = default;
     };
     Parts last_;
+    bool wrong_ = false;  // what is reported of them
     const btCollisionObject* a_;
     bool ball_, parts_;  // it has parts: a point of each will do
     std::vector<Touch>* touches_;

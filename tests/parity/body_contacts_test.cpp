@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -299,6 +300,45 @@ TEST_P(BodyContacts, DucksWaitForNothing) {
         const vec3 at(d.position);
         EXPECT_TRUE(at.x > 0 && at.x < 1.2F && at.y > 0 && at.y < 0.6F && at.z > 0 && at.z < 0.5F) << at.x << " " << at.y << " " << at.z;
     }
+}
+
+// Boards that lie on each other or end to end, within 0.2 mm and 0.5 mrad: no contact is found at which they overlap by more than they do.
+// Of some of these pairs Bullet reports a direction along which they overlap by their length.
+TEST(ContactSearch, NoContactIsDeeperThanTheOverlap) {
+    const vec3 size(0.02F, 0.2F, 0.1F);
+    Scenario s;
+    for (int k = 0; k < 2; ++k) s.addBox(size, vec3(0.0F), 0.5F);
+    BoxParams box;
+    box.min = vec3(-3.0F);
+    box.max = vec3(3.0F);
+    BulletSolids search(BulletSolids::Scene{.box = box, .planes = {}, .still = {}, .moving = {}, .poses = {}}, s.bodies, s.forms);
+    const BodyHost host = search.host();
+    std::mt19937 random(2);
+    const auto any = [&random] { return std::uniform_real_distribution<float>(-1, 1)(random); };
+    float deepest = 0;
+    size_t found = 0;
+    constexpr int kPairs = 4000;
+    for (int n = 0; n < kPairs; ++n) {
+        // Where the second is from the first: beside its broad face, or beyond its end.
+        vec3 offset = size * vec3(0.9F * any(), 0.9F * any(), 0.9F * any());
+        const int axis = n % 2;
+        offset[axis] = size[axis] + 1.0e-4F * (any() - 1);
+        const quat about = glm::normalize(quat(any(), any(), any(), any()));
+        std::vector<BodyState> states(2);
+        states[0].pose.rotation = about;
+        states[1].pose = {about * offset, about * glm::normalize(quat(1, 2.5e-4F * any(), 2.5e-4F * any(), 2.5e-4F * any()))};
+        const std::vector<vec4> balls = {vec4(0, 0, 0, 0.01F), vec4(states[1].pose.position, 0.01F)};
+        std::vector<BodyContact> contacts;
+        ASSERT_TRUE(host.contacts(host.self, states, balls, kFrame, contacts));
+        found += std::min<size_t>(contacts.size(), 1);
+        for (const BodyContact& c : contacts) {
+            const Pose &a = states[c.a].pose, &b = states[c.b].pose;
+            deepest = std::min(deepest, glm::dot(a.toWorld(c.onA) - b.toWorld(c.onB), b.rotation * c.normal));
+        }
+    }
+    std::printf("the deepest contact overlaps by %.2e m\n", double{-deepest});
+    EXPECT_EQ(found, size_t{kPairs}) << "contacts of each pair";
+    EXPECT_GT(deepest, -5.0e-4F);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, BodyContacts, testing::Values("cl", "gl"), [](const auto& row) { return row.param; });

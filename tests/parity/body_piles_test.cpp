@@ -10,7 +10,7 @@
 namespace rivulet::body_piles_test {
 namespace {
 
-using body_rig::kGravity, body_rig::Rig, body_rig::Scenario;
+using body_rig::kGravity, body_rig::kTurn, body_rig::Rig, body_rig::Scenario;
 
 class BodyPiles : public testing::TestWithParam<const char*> {};
 
@@ -58,6 +58,32 @@ TEST_P(BodyPiles, Rest) {
     EXPECT_LT(most.speed, 0.02);
     EXPECT_LT(most.way, 1.5e-3);
     EXPECT_LT(lean, 4.0e-3);
+}
+
+// Eight dominoes fall over and lie on each other. From 2.5 to 5 s nothing moves.
+TEST_P(BodyPiles, DominoesLean) {
+    Scenario s;
+    for (int k = 0; k < 8; ++k)
+        s.addBox(vec3(0.02F, 0.2F, 0.1F), vec3(0.08F * static_cast<float>(k) - 0.3F, 0.1F, 0), 0.5F,
+                 glm::angleAxis(k == 0 ? -12 * kTurn : 0.0F, vec3(0, 0, 1)));
+    Rig rig(GetParam(), s);
+    if (!rig.world) GTEST_SKIP() << rig.absent;
+    Rest most;
+    std::vector<dvec3> half;
+    for (int frame = 0; frame < 300; ++frame) {
+        rig.frame();
+        if (frame == 150) half = placesOf(rig, s.bodies.size());
+        if (frame < 150) continue;
+        const Rest rest = restOf(rig, half, 0.1);
+        most = {std::max(most.speed, rest.speed), std::max(most.way, rest.way)};
+    }
+    double lowest = 1;
+    for (size_t k = 0; k < 8; ++k) lowest = std::min(lowest, rig.place(k).y);
+    std::printf("%s: %.1e m/s, %.1e m from 2.5 to 5 s\n", GetParam(), most.speed, most.way);
+    EXPECT_LT(lowest, 0.05) << "they have fallen";
+    EXPECT_GT(lowest, 5.0e-3) << "and not into the floor";
+    EXPECT_LT(most.speed, 0.03);
+    EXPECT_LT(most.way, 2.0e-3);
 }
 
 // Boxes that land flat come back to e^2 of their height, and do not turn.

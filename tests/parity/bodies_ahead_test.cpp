@@ -304,8 +304,8 @@ TEST_P(BodiesAhead, MomentumStaysAndABlowIsNoticed) {
     }
 }
 
-// A ball is thrown at a wall, which Bullet knows. Its path is that of the law of impact, and nothing waits. (Bullet's own bounce begins up to
-// 20 mm before a wall, with a speed that depends on where a step ends.) A hand that holds it is the host's: then each substep waits.
+// A ball is thrown at a wall, which Bullet knows. Its path is that of the law of impact, and nothing waits. (Bullet's own bounce begins up
+// to 20 mm before a wall, with a speed that depends on where a step ends.) A hand that holds it is the host's: then each substep waits.
 TEST_P(BodiesAhead, ABallComesBackFromAWall) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -327,8 +327,8 @@ TEST_P(BodiesAhead, ABallComesBackFromAWall) {
     solids.bodyHost = contacts.host();
     auto ahead = make(*gpu->device, p, solids);
     ASSERT_TRUE(ahead);
-    // It ends the substep in which it meets the wall at the wall, and parts then with half its speed. Friction makes it roll there from that
-    // substep on: of its speed along the wall it keeps 1 / (1 + 2/5), since the angular momentum about the point of contact stays.
+    // It ends the substep in which it meets the wall at the wall, and parts then with half its speed. Friction makes it roll there from
+    // that substep on: of its speed along the wall it keeps 1 / (1 + 2/5), since the angular momentum about the point of contact stays.
     const double step = p.fixedStep, meets = std::ceil((double{kStart} - 0.1) / 3 / step) * step, last = meets - step;
     const auto placeAt = [&](double t) {
         const auto fallen = [step](double s) { return 0.5 * s * (s + step); };  // symplectic Euler

@@ -21,6 +21,7 @@
 
 #include "engine/core/assert.h"
 #include "fluid/scene/solids_bullet_contacts.h"
+#include "shaders/fluid/solids/body_pull.h"
 
 namespace rivulet {
 
@@ -138,13 +139,14 @@ struct BulletSolids::Impl {
     struct Past {
         double seconds;           // until the next
         std::vector<Pose> poses;  // of those that move
+        std::optional<BodyPull> hand;
     };
     std::deque<Past> pasts;  // for predictions, which begin in the past
     // For contacts: the floating bodies with shapes whose faces and edges Bullet clips against each other. In the world it does not: its
     // results would change.
     std::vector<std::unique_ptr<btCollisionObject>> probes;
     std::vector<ContactBody> probed;
-    std::optional<Hold> hand;
+    std::optional<BodyPull> hand;
 
     ~Impl() {
         for (auto* list : {&all, &bodies})
@@ -284,24 +286,20 @@ struct BulletSolids::Impl {
             b.updateInertiaTensor();
         }
     }
-    void pull(btRigidBody& b, const vec3& gravity, double seconds) const {
-        if (!(b.getMass() > 0) || !(seconds > 0)) return;
-        // Explicit, and a grip off the middle is up to four times as stiff: a step must be short beside the spring's time.
-        constexpr float kQuick = 30.0F, kShare = 0.1F;  // 1/s; of that time
-        constexpr float kCalm = 6.0F;                   // 1/s, what it turns about the grip
-        constexpr float kHardest = 200.0F;              // m/s^2
-        const float rate = std::min(kQuick, kShare / static_cast<float>(seconds));
-        const btVector3 arm = b.getWorldTransform() * to(hand->at) - b.getWorldTransform().getOrigin();
+    bool holds(const std::optional<BodyPull>& by) const { return by && by->body < bodies.size() && bodies[by->body]->getMass() > 0; }
+    // `usual`: s, the length of the steps on which the stiffness depends.
+    void pull(const BodyPull& by, const vec3& gravity, double seconds, double usual) {
+        if (!(seconds > 0)) return;
+        btRigidBody& b = *bodies[by.body];
+        const auto mass = static_cast<float>(b.getMass());
+        const btVector3 arm = b.getWorldTransform() * to(by.at) - b.getWorldTransform().getOrigin();
         const vec3 place = from(b.getWorldTransform().getOrigin() + arm), velocity = from(b.getVelocityInLocalPoint(arm));
-        vec3 wanted = rate * rate * (hand->to - place) - 2 * rate * velocity;
-        if (const float hard = glm::length(wanted); hard > kHardest) wanted *= kHardest / hard;
-        b.applyForce(to(wanted * static_cast<float>(b.getMass())), arm);
-        b.applyCentralForce(to(-gravity * static_cast<float>(b.getMass())));  // at its middle: else it would hang from the grip and swing
-        b.setAngularVelocity(b.getAngularVelocity() * std::exp(-kCalm * static_cast<float>(seconds)));
+        b.applyForce(to(springOf(place, velocity, by.to, by.rate, by.most, static_cast<float>(usual)) * mass), arm);
+        b.applyCentralForce(to(-gravity * mass));  // at its middle: else it would hang from the grip and swing
+        b.setAngularVelocity(b.getAngularVelocity() * calmOf(static_cast<float>(seconds)));
     }
     // As of BodyHost.
     bool contacts(std::span<const BodyState> states, std::span<const vec4> balls, double seconds, std::vector<BodyContact>& found) {
-        if (hand) return false;
         std::vector<ContactSolid> solids;
         solids.reserve(all.size());
         for (const auto& solid : all) solids.push_back({solid.get(), vec3(0.0F), vec3(0.0F), 0});
@@ -339,23 +337,42 @@ struct BulletSolids::Impl {
         }
         return poses;
     }
-    // They are about to move on by `seconds`.
+    // What pulls in `seconds`, in the past where negative.
+    std::optional<BodyPull> handIn(double seconds) const {
+        for (auto past = pasts.rbegin(); past != pasts.rend() && seconds < 0; ++past) {
+            seconds += past->seconds;
+            if (seconds >= 0) return past->hand;
+        }
+        return hand;
+    }
+    // All are about to move on by `seconds`.
     void remember(double seconds) {
         constexpr size_t kMost = 256;  // steps: the last few frames
-        if (moving.empty() || !(seconds > 0)) return;
+        if (!(seconds > 0)) return;
         if (pasts.size() == kMost) pasts.pop_front();
-        pasts.push_back({seconds, now});
+        pasts.push_back({seconds, now, hand});
     }
     void advance(std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
         const std::vector<Pose> next = posesIn(seconds);
         remember(seconds);
-        move(loads, gravity, seconds, now, next, states);
+        move(loads, gravity, seconds, now, next, hand, seconds, states);
         left = std::max(left - seconds, 0.0);
         now = next;
     }
+    // As of BodyHost. The spring of a hand needs short steps, and is as stiff as in those of the world.
+    void predict(std::span<const BodyLoad> loads, const vec3& gravity, double begin, double seconds, std::span<BodyState> states) {
+        constexpr double kShort = 1.0 / 300;  // s: steps that are shorter change nothing
+        const std::optional<BodyPull> by = handIn(begin + 0.5 * seconds);
+        const double longest = std::max(pasts.empty() ? 0.0 : pasts.back().seconds, kShort);
+        const int parts = holds(by) ? static_cast<int>(std::ceil(seconds / longest - 1.0e-6)) : 1;
+        for (int k = 0; k < parts; ++k) {
+            const double length = seconds / parts, at = begin + k * length;
+            move(loads, gravity, length, posesIn(at), posesIn(at + length), by, longest, states);
+        }
+    }
     // By a step, in which the moving solids go from `begin` to `end`.
     void move(std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<const Pose> begin, std::span<const Pose> end,
-              std::span<BodyState> states) {
+              const std::optional<BodyPull>& by, double usual, std::span<BodyState> states) {
         put(states);
         for (size_t k = 0; k < bodies.size(); ++k) {
             btRigidBody& b = *bodies[k];
@@ -363,7 +380,7 @@ struct BulletSolids::Impl {
             if (b.getMass() > 0) b.applyCentralForce(to(loads[k].force + dvec3(gravity) * double{b.getMass()}));
             if (b.getMass() > 0) b.applyTorque(to(loads[k].torque));
         }
-        if (hand && hand->body < bodies.size()) pull(*bodies[hand->body], gravity, seconds);
+        if (holds(by)) pull(*by, gravity, seconds, usual);
         for (size_t k = 0; k < moving.size(); ++k) {
             moving[k]->setInterpolationWorldTransform(to(begin[k]));
             moving[k]->setWorldTransform(to(end[k]));
@@ -454,11 +471,12 @@ BodyHost BulletSolids::host() {
     h.contacts = [](void* self, std::span<const BodyState> states, std::span<const vec4> balls, double seconds,
                     std::vector<BodyContact>& found) { return static_cast<Impl*>(self)->contacts(states, balls, seconds, found); };
     h.predict = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double from, double seconds,
-                   std::span<BodyState> states) {
-        auto& w = *static_cast<Impl*>(self);
-        w.move(loads, gravity, seconds, w.posesIn(from), w.posesIn(from + seconds), states);
-    };
+                   std::span<BodyState> states) { static_cast<Impl*>(self)->predict(loads, gravity, from, seconds, states); };
     h.passed = [](void* self, double seconds) { static_cast<Impl*>(self)->passed(seconds); };
+    h.pulls = [](void* self, std::vector<BodyPull>& found) {
+        const Impl& w = *static_cast<Impl*>(self);
+        if (w.holds(w.hand)) found.push_back(*w.hand);
+    };
     // Poses of the moving solids: current and at the end of the step.
     h.save = [](void* self) {
         const Impl& w = *static_cast<Impl*>(self);
@@ -495,7 +513,7 @@ BodyHost BulletSolids::host() {
     return h;
 }
 
-void BulletSolids::hold(const std::optional<Hold>& hand) { impl_->hand = hand; }
+void BulletSolids::hold(const std::optional<BodyPull>& hand) { impl_->hand = hand; }
 
 void BulletSolids::moveTo(std::span<const Pose> poses, double seconds) {
     if (poses.size() != impl_->moving.size()) return;

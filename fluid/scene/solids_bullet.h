@@ -54,13 +54,8 @@ class BulletSolids {
     BodyHost host();  // the BulletSolids must outlive its use
     // The poses of the moving meshes in `seconds`; 0: they are moved there now.
     void moveTo(std::span<const Pose> poses, double seconds);
-    // Pulls the point `at` (m, own frame) of a body to `to` (m, world) with a critically damped spring that carries the body's weight and
-    // is limited to 20 times that weight. Nothing: ends.
-    struct Hold {
-        size_t body = 0;
-        vec3 at{0.0F}, to{0.0F};
-    };
-    void hold(const std::optional<Hold>& hand);
+    // Pulls at a body from now on; a fixed one does not move. Nothing: ends.
+    void hold(const std::optional<BodyPull>& hand);
 
   private:
     struct Impl;

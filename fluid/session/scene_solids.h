@@ -100,7 +100,7 @@ class SceneSolids {
     SceneThing thingOf(size_t node) const;
     std::optional<MetThing> meet(const vec3& origin, const vec3& direction) const;
     Bounds boundsOf(const SceneFile& scene, const SceneThing& thing) const;
-    void hold(const std::optional<BulletSolids::Hold>& hand);
+    void hold(const std::optional<BodyPull>& hand);
     bool hasBodies() const { return contacts_ != nullptr; }
 
   private:

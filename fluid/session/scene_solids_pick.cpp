@@ -53,7 +53,7 @@ Bounds SceneSolids::boundsOf(const SceneFile& scene, const SceneThing& thing) co
     return all;
 }
 
-void SceneSolids::hold(const std::optional<BulletSolids::Hold>& hand) {
+void SceneSolids::hold(const std::optional<BodyPull>& hand) {
     if (contacts_) contacts_->hold(hand);
 }
 

@@ -67,7 +67,7 @@ class Session {
     // m, world, as drawn now; of an emitter or sink, from the scene's values.
     Bounds boundsOf(const Thing& thing) const { return solids_.boundsOf(scene_, thing); }
     // Pulls at a body (solids_bullet.h). Nothing: ends.
-    void hold(const std::optional<BulletSolids::Hold>& hand) { solids_.hold(hand); }
+    void hold(const std::optional<BodyPull>& hand) { solids_.hold(hand); }
     // FluidInputs::mostMs of the next steps.
     void limitFrames(double ms) { mostMs_ = ms; }
     // From the next step on the jet of scene().pour falls on that point (m, world); nothing: it stops. No effect where pour.litres is 0 or

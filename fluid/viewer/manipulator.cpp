@@ -154,10 +154,11 @@ void Manipulator::grab(const ViewRay& ray, const Camera& camera, Session& sessio
     if (!met || met->thing.kind != Thing::Kind::body || session.replaying() != nullptr) return;
     const BodyParams& body = session.scene().bodies[met->thing.index];
     if (body.fixed) return;
-    const BodyState& state = session.world().bodies()[met->thing.index];
+    const BodyState& state = session.world().expectedBodies()[met->thing.index];
     const vec3 forward = glm::normalize(camera.target - camera.position);
-    held_ = Held{{met->thing.index, glm::inverse(state.pose.rotation) * (met->place - state.pose.position), met->place},
-                 glm::dot(met->place - camera.position, forward)};
+    held_ =
+        Held{{static_cast<uint32_t>(met->thing.index), glm::inverse(state.pose.rotation) * (met->place - state.pose.position), met->place},
+             glm::dot(met->place - camera.position, forward)};
     chosen_ = met->thing;
 }
 
@@ -241,7 +242,7 @@ void Manipulator::draw(const InputEvents& input, const Camera& camera, const Ses
         if (from && to) list.AddLine(ImVec2(from->x / scale, from->y / scale), ImVec2(to->x / scale, to->y / scale), colour, width);
     };
     if (held_) {
-        const BodyState& state = session.world().bodies()[held_->hold.body];
+        const BodyState& state = session.world().expectedBodies()[held_->hold.body];
         line(state.pose.position + state.pose.rotation * held_->hold.at, held_->hold.to, IM_COL32(255, 255, 255, 200), 2);
         return;
     }

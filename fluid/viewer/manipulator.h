@@ -54,7 +54,7 @@ class Manipulator {
         float begin = 0;                      // m along the axis, or rad about it, where the drag began
     };
     struct Held {
-        BulletSolids::Hold hold;
+        BodyPull hold;
         float depth = 0;  // m, along the camera's view
     };
     std::optional<Handles> handles(const Camera& camera, const Session& session, const SceneFile& draft) const;

@@ -106,7 +106,9 @@ TEST_P(AdvanceBodies, MovesAsTheHostDoes) {
                       static_cast<float>(loads.added(k)),
                       bodies[k].meetsWater ? static_cast<float>(shape.samples.size()) : 0.0F,
                       kBodies,
-                      0};
+                      0,
+                      vec4(0),
+                      vec4(0)};
         for (uint32_t t = 0; t < LOAD_THREADS; ++t)
             partial[size_t{k} * LOAD_THREADS + t] = {
                 vec4(0.5F * shape.mass * vec3(any(), any(), any()), 0.5F / LOAD_THREADS * static_cast<float>(shape.samples.size())),
@@ -170,7 +172,7 @@ TEST_P(AdvanceBodies, KeepsTheStateOfABodyWhoseNextOneIsImpossible) {
     DeviceBody row{};
     row.position = vec4(1, 2, 3, 0);
     row.rotation = vec4(0, 0, 0, 1);
-    const BodyMotion motion{vec4(1, 1, 1, 1), vec4(1, 2, 3, 1), 0.0F, 10.0F, 1, 0};
+    const BodyMotion motion{vec4(1, 1, 1, 1), vec4(1, 2, 3, 1), 0.0F, 10.0F, 1, 0, vec4(0), vec4(0)};
     ASSERT_NO_FATAL_FAILURE(write(partial, std::span(&motion, 1), std::span(&row, 1)));
     StepParams step{};
     step.dt = 1.0e-3F;
@@ -305,7 +307,7 @@ TEST_P(BodiesAhead, MomentumStaysAndABlowIsNoticed) {
 }
 
 // A ball is thrown at a wall, which Bullet knows. Its path is that of the law of impact, and nothing waits. (Bullet's own bounce begins up
-// to 20 mm before a wall, with a speed that depends on where a step ends.) A hand that holds it is the host's: then each substep waits.
+// to 20 mm before a wall, with a speed that depends on where a step ends.)
 TEST_P(BodiesAhead, ABallComesBackFromAWall) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -353,10 +355,6 @@ TEST_P(BodiesAhead, ABallComesBackFromAWall) {
     EXPECT_LT(expected, 0.01) << "states of a frame earlier, continued through the bounce";
     EXPECT_EQ(frames, 45);
     EXPECT_EQ(waits, 0U);
-    contacts.hold(BulletSolids::Hold{.body = 0, .at = vec3(0.0F), .to = vec3(1, 1, 0.3F)});
-    const uint64_t before = statsOf(*ahead).bodyWaits;
-    ahead->step({.gravity = p.gravity}, kFrame);
-    EXPECT_GE(statsOf(*ahead).bodyWaits - before, static_cast<uint64_t>(ahead->lastSubsteps()));
 }
 
 // Two meshes: one stands, one moves to and fro. Contacts are found as soon as the ball may meet one of them on its way.
@@ -411,13 +409,6 @@ TEST(Contacts, KnowMeshesTheirMotionAndOtherBodies) {
     contacts.moveTo(std::span(&turned, 1), kFrame);
     EXPECT_GE(count(vec4(-1.6F, 0.6F, 0, 0.05F)), 1U);
     EXPECT_EQ(std::ranges::count(found, 0U, &BodyContact::a), 1) << "the plate sweeps over it";
-    contacts.hold(BulletSolids::Hold{});
-    host.passed(host.self, kFrame);
-    const std::array<vec4, 2> balls = {vec4(3, 0, 0, 0.1F), vec4(0, 0, 2, 0.01F)};
-    const std::array<BodyState, 2> states;
-    EXPECT_FALSE(host.contacts(host.self, states, balls, kFrame, found)) << "held";
-    contacts.hold({});
-    EXPECT_EQ(count(vec4(3, 0, 0, 0.1F)), 0U);
 }
 
 // A world is saved, continued by another, reset, and bodies come and go, while the GPU moves them: nothing of their motion is lost.

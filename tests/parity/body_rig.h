@@ -63,6 +63,20 @@ struct Scenario {
     }
 };
 
+// Their world.
+inline FluidParams paramsOf(const Scenario& setup) {
+    FluidParams p;
+    p.method = "pbf";
+    p.spacing = 0.05F;
+    p.box.min = vec3(-3, 0, -3);
+    p.box.max = vec3(3, 4, 3);
+    p.blocks = {{vec3(2.9F, 0, 2.9F), vec3(3, 0.1F, 3), vec3(0.0F)}};
+    p.gravity = setup.gravity;
+    p.fixedStep = setup.step;
+    p.maxBodySamples = 1;
+    return p;
+}
+
 class Rig {
   public:
     Rig(const char* device, const Scenario& setup) : setup_(setup) {
@@ -74,15 +88,7 @@ class Rig {
         gpu_ = std::move(*gpu);
         late = std::make_unique<LateDevice>(*gpu_.device, setup.bodies.size());
         late->poison = setup.poison;
-        FluidParams p;
-        p.method = "pbf";
-        p.spacing = 0.05F;
-        p.box.min = vec3(-3, 0, -3);
-        p.box.max = vec3(3, 4, 3);
-        p.blocks = {{vec3(2.9F, 0, 2.9F), vec3(3, 0.1F, 3), vec3(0.0F)}};
-        p.gravity = setup.gravity;
-        p.fixedStep = setup.step;
-        p.maxBodySamples = 1;
+        const FluidParams p = paramsOf(setup);
         contacts = std::make_unique<BulletSolids>(
             BulletSolids::Scene{
                 .box = p.box, .planes = setup_.planes, .still = setup_.still, .moving = setup_.moving, .poses = setup_.poses},

@@ -21,6 +21,7 @@ struct Touching {
     StepParams step{};
     float passed = 0;             // s, of the frame
     std::vector<BodyLoad> loads;  // of each body, or none
+    std::vector<BodyPull> pulls;
     std::vector<DeviceBody> run(Device& device) const {
         const Define group{"LOCAL_SIZE", std::to_string(TOUCHING_GROUP)};
         const Result<Kernel> kernel = device.kernel("fluid/solids/advance_touching", std::span(&group, 1));
@@ -40,7 +41,13 @@ struct Touching {
                           0,
                           0,
                           static_cast<uint32_t>(bodies.size()),
-                          made.slots[k]};
+                          made.slots[k],
+                          vec4(0),
+                          vec4(0)};
+        }
+        for (const BodyPull& p : pulls) {
+            motions[p.body].grip = vec4(p.at, p.rate);
+            motions[p.body].hand = vec4(p.to, p.most);
         }
         const auto upload = [&device]<class T>(const std::vector<T>& items) {
             Result<Buffer> buffer = device.allocate(std::max<size_t>(items.size(), 1) * sizeof(T));

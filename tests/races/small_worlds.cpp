@@ -368,7 +368,8 @@ void addBodies(Device& device, std::vector<float>& to) {
         b.rotation = vec4(0, 0, 0, 1);
     }
     bodies[2].spin.y = NAN;
-    const std::vector<BodyMotion> motions(3, {vec4(1.0F), vec4(0.1F, 0.2F, 0.3F, 1.0F), 0.5F, 10.0F, 3, 0});
+    const std::vector<BodyMotion> motions(3,
+                                          {vec4(1.0F), vec4(0.1F, 0.2F, 0.3F, 1.0F), 0.5F, 10.0F, 3, 0, vec4(0.1F, 0, 0, 30), vec4(200)});
     Result<Buffer> sums = device.allocate(loads.size() * sizeof(LoadRow)), moved = device.allocate(bodies.size() * sizeof(DeviceBody)),
                    by = device.allocate(motions.size() * sizeof(BodyMotion));
     EXPECT_TRUE(sums && by && moved);

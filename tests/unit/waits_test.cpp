@@ -3,6 +3,7 @@
 #include <rivulet_glad/gl.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <fstream>
 #include <map>
@@ -73,12 +74,14 @@ struct Case {
     int from = 3;        // frames until memory has grown to what the scene needs, and until what is to be seen happens
     bool lands = false;  // drops land in the frames that count
     float ballAt = 0;    // m: instead of `scene`, ballInPool()
+    bool held = false;   // a hand draws the first body through the water
 };
 
 const Case kRain{"rain_on_spot", {"flow.0.mapSize=256"}, 12, true};
 const Case kShower{"shower", {"flow.0.mapSize=256", "fluid.spacing=0.01", "emitters.0.start=0"}, 18, true};
 const Case kBobs{"", {}, 3, false, 0.72F};
 const Case kWetBall{"", {"fluid.wetness.on=true"}, 3, false, 0.72F};
+const Case kHeld{.scene = "", .set = {}, .ballAt = 0.72F, .held = true};
 const Case kDropped{"", {}, 15, false, 1.26F};  // 0.5 m above the water: it hits it in frame 19
 // A head that speaks in the rain.
 const Case kCrying{"crying", {"flow.0.mapSize=256", "flow.0.sources.3.rate=60000"}, 12, true};
@@ -140,6 +143,9 @@ Calls waitsOf(const Case& c, const ShaderFiles& files, Device& device, uint64_t&
             testing::startClWaits();
             waited = 0;
         }
+        if (c.held)
+            (*session)->hold(BodyPull{
+                .body = 0, .at = vec3(0.06F, 0.06F, 0), .to = vec3(0.8F + 0.3F * std::sin(0.4F * static_cast<float>(frame)), 0.6F, 0.8F)});
         (*session)->step(1.0 / 60, false);
         LateView::Shown shown{{}, &(*session)->solids(), 0};
         if (LateView::suits(**session)) {  // as a window does
@@ -186,12 +192,13 @@ class Waits : public ::testing::Test {
 };
 
 // A GPU waits for no frame of these: particles of all methods with foam, moving and deforming solids, drops and wetness on skins, rain on
-// them, a ball that bobs, also with a wet surface, or falls into a pool, ducks that touch each other and the walls.
+// them, a ball that bobs, also with a wet surface, falls into a pool or is drawn through it by a hand, ducks that touch each other and the
+// walls.
 TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
     for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}},
                           Case{"paddle_wheel", {"fluid.spacing=0.08", "fluid.method=dfsph"}}, Case{"waving_sheet", {"fluid.spacing=0.08"}},
-                          Case{"cold_bottle", {}}, kRain, kShower, kCrying, kBobs, kWetBall, kDropped, kDucks}) {
-        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt);
+                          Case{"cold_bottle", {}}, kRain, kShower, kCrying, kBobs, kWetBall, kHeld, kDropped, kDucks}) {
+        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt << (c.held ? " held" : ""));
         const std::unique_ptr<Device> device = makeGlDevice(files_, {});
         uint64_t bodyWaits = 0;
         const Calls waits = waitsOf(c, files_, *device, bodyWaits);
@@ -203,8 +210,8 @@ TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
 // The same on OpenCL, as a window draws it.
 TEST_F(Waits, FramesOnOpenClWaitForWhatTheTableNamesAlone) {
     for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}}, kRain, kShower, kCrying,
-                          kBobs, kWetBall, kDropped, kDucks}) {
-        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt);
+                          kBobs, kWetBall, kHeld, kDropped, kDucks}) {
+        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt << (c.held ? " held" : ""));
         Result<std::unique_ptr<Device>> device = makeClDevice(files_);
         if (!device && testing::mayLackOpenGl()) GTEST_SKIP() << device.error().message;
         ASSERT_TRUE(device) << device.error().message;

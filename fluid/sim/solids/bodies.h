@@ -67,6 +67,16 @@ struct BodyContact {
     float friction = 0.5F, restitution = 0;  // Coulomb; 0 to 1
 };
 
+// A hand that holds a body in a frame: it pulls one of its points by a critically damped spring, carries its weight and calms its spin.
+// The law is in shaders/fluid/solids/body_pull.h, for hosts and GPUs.
+struct BodyPull {
+    uint32_t body = 0;  // place among the states
+    vec3 at{0.0F};      // m, in the body's frame
+    vec3 to{0.0F};      // m, in the world
+    float rate = 30;    // 1/s: the spring's; in longer steps it is softer
+    float most = 200;   // m/s^2: the spring pulls with no more than this times the mass
+};
+
 // Moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither. Loads and states are those
 // of all bodies, in the order of FluidWorld::bodyIds.
 struct BodyHost {
@@ -91,11 +101,14 @@ struct BodyHost {
     // On a GPU a step waits for the loads before each call of advance. With these two functions (both, or neither) it does not: the GPU
     // moves the bodies, and the host learns of it some frames late. contacts is called once a frame; on the cpu never. It adds to `found`
     // all contacts that may act in the next `seconds`, while the bodies are about in `states` and their centres of mass stay in their balls
-    // (xyz m, w m, the radius). No contacts: they move as FreeBodies does it. False: only the host can move them in this frame, for
-    // instance since it holds one. After true, `passed` is called for each substep, instead of advance.
+    // (xyz m, w m, the radius). No contacts: they move as FreeBodies does it. False: only the host can move them in this frame.
+    // After true, `passed` is called for each substep, instead of advance.
     bool (*contacts)(void* self, std::span<const BodyState> states, std::span<const vec4> balls, double seconds,
                      std::vector<BodyContact>& found) = nullptr;
     void (*passed)(void* self, double seconds) = nullptr;
+    // May be null. Called before contacts: adds what pulls at bodies in this frame, at most one pull for each. It needs predict, which must
+    // pull as well, as advance does.
+    void (*pulls)(void* self, std::vector<BodyPull>& found) = nullptr;
     // May be null; then bodies are expected to move freely. As advance, from `from` (s, before now where negative) on, without an effect on
     // later calls: where bodies will be under loads as they lately were.
     void (*predict)(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double from, double seconds,

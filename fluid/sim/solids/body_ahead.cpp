@@ -3,6 +3,7 @@
 #include <cstring>
 #include <utility>
 
+#include "engine/core/assert.h"
 #include "fluid/sim/solids/body_passes.h"
 
 namespace rivulet {
@@ -50,7 +51,14 @@ void BodyPasses::writeMotions(std::span<const vec4> balls) {
                           static_cast<float>(filter_.added(k)),
                           static_cast<float>(samplesOf(k)),
                           static_cast<uint32_t>(bodies_.size()),
-                          touching_.slots.empty() ? NO_SLOT : touching_.slots[k]};
+                          touching_.slots.empty() ? NO_SLOT : touching_.slots[k],
+                          vec4(0.0F),
+                          vec4(0.0F)};
+    }
+    for (const BodyPull& p : pulls_) {
+        ASSERT(p.body < bodies_.size(), "a pull is of a body among the states");
+        motionRows_[p.body].grip = vec4(p.at, p.rate);
+        motionRows_[p.body].hand = vec4(p.to, p.most);
     }
     device_->write(motions_, std::as_bytes(std::span(motionRows_)));
 }
@@ -98,16 +106,20 @@ void BodyPasses::settleNear(const vec3& p, float spacing) {
 bool BodyPasses::findContacts(const vec3& gravity, double seconds) {
     BodyForecast& forecast = late_->forecast;
     const double end = time_ + seconds;
+    pulls_.clear();
+    if (host_.pulls != nullptr) host_.pulls(host_.self, pulls_);
+    if (!pulls_.empty()) late_->heldUntil = end;
     const float strength = glm::length(gravity);
     std::vector<BodyContact> found;
     const auto ask = [&](double from) {
         found.clear();
         return host_.contacts(host_.self, forecast.at(time_), forecast.balls(from, end, strength), seconds, found);
     };
+    const bool held = !pulls_.empty() || forecast.time() < late_->heldUntil;
     forecast.expect(nullptr, gravity, time_, end);
-    // Far from everything since the last report: then they have moved freely.
-    if (touching_.touching == 0 && !ask(forecast.time())) return false;
-    if (touching_.touching > 0 || !found.empty()) {
+    // Held by nothing and far from everything since the last report: then they have moved freely.
+    if (!held && touching_.touching == 0 && !ask(forecast.time())) return false;
+    if (held || touching_.touching > 0 || !found.empty()) {
         forecast.expect(&host_, gravity, time_, end);
         if (!ask(time_)) return false;
     }

@@ -126,6 +126,7 @@ class BodyPasses {
         std::vector<uint32_t> faults;  // of each body, that arrived since they were last looked at
         BodyStates states;
         double crowdedUntil = -1;  // s: until then more may touch than a GPU moves
+        double heldUntil = -1;     // s: until then pulls act
         ContactRows moved = {};    // the contacts whose states contactStates_ has: of the last substep
         double step = 0;           // s, that substep's length
     };
@@ -160,7 +161,8 @@ class BodyPasses {
     Buffer pairs_, contacts_, colours_, contactStates_, contactsBefore_;  // of advance_touching
     Kernel place_, index_, wetSamples_, push_, sumLoads_, advance_, touch_;
     std::vector<BodyMotion> motionRows_;
-    ContactRows touching_;  // of this frame
+    ContactRows touching_;         // of this frame
+    std::vector<BodyPull> pulls_;  // of this frame
     // On a GPU: what is known of bodies that it moves. Replaced where reads in flight must no longer arrive.
     std::shared_ptr<Late> late_;
     bool mayBeAhead_ = false;              // a GPU, and a host that allows it

@@ -1,5 +1,5 @@
 // How a rigid body moves in a substep: the fluid's load on it, filtered, and the rotation that its angular momentum gives. Included after
-// BUFFERS: loadOf reads the rows of sum_loads.
+// BUFFERS, since loadOf reads the rows of sum_loads, and after body_pull.h.
 CONSTANT(float, MOST, 1.0e6f);       // kMostDistance, kMostSpeed
 CONSTANT(float, MOST_LOAD, 1.0e36f);  // of a sum of squares: beyond it a load is not finite
 
@@ -33,6 +33,23 @@ FN vec3 spinOf(vec4 q, vec3 inertia, vec3 momentum) { return turnedBy(q, turnedB
 FN vec4 turnedOn(vec4 q, vec3 spin, float seconds) {
     q = productOf(turnOf(spin * seconds), q);
     return q * (1.0f / sqrt(dot(q.xyz, q.xyz) + q.w * q.w));
+}
+
+// What the hand that holds a body does to it in a substep.
+STRUCT(PullNow) {
+    vec4 speed;    // m/s, that it adds
+    vec4 angular;  // N m s; w: what it leaves of the spin
+};
+FN PullNow pullOn(BodyMotion m, vec3 x, vec4 q, vec3 v, vec3 spin, vec3 gravity, float seconds) {
+    PullNow p;
+    p.speed = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    p.angular = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    if (!(m.grip.w > 0.0f)) return p;
+    vec3 arm = turnedBy(q, m.grip.xyz);
+    vec3 spring = springOf(x + arm, v + cross(spin, arm), m.hand.xyz, m.grip.w, m.hand.w, seconds);
+    p.speed = vec4((spring - gravity) * seconds, 0.0f);
+    p.angular = vec4(cross(arm, spring) * (m.inertia.w * seconds), calmOf(seconds));
+    return p;
 }
 
 // Whether a body may be in this state: finite, and within MOST.

@@ -31,6 +31,8 @@ STRUCT(BodyMotion) {
     float samples;  // 0: the water does not meet it
     uint bodyCount;
     uint slot;  // its place in work-group memory of advance_touching, or NO_SLOT: it touches nothing in this frame
+    vec4 grip;  // m, own frame: the point that a hand pulls (body_pull.h); w: 1/s, of its spring, 0: none holds it
+    vec4 hand;  // m, where to; w: m/s^2, at most
 };
 CONSTANT(uint, NO_SLOT, 0xffffffffu);
 STRUCT(LoadRow) {
@@ -38,7 +40,7 @@ STRUCT(LoadRow) {
     vec4 torque;  // N m, about the centre of mass
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
-static_assert(sizeof(DeviceBody) == 176 && sizeof(BodyMotion) == 48 && sizeof(LoadRow) == 32);
+static_assert(sizeof(DeviceBody) == 176 && sizeof(BodyMotion) == 80 && sizeof(LoadRow) == 32);
 }  // namespace rivulet
 #include "shaders/common/lang_end.h"
 #endif

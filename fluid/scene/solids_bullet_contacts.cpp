@@ -18,6 +18,7 @@
 #pragma GCC diagnostic pop
 #endif
 
+#include "fluid/scene/solids_bullet_approach.h"
 #include "fluid/sim/solids/body_contacts.h"
 
 namespace rivulet {
@@ -25,18 +26,41 @@ namespace rivulet {
 namespace {
 
 constexpr size_t kMostOfPair = 8;
-constexpr float kNear = 0.02F;      // of a body's size: it may touch what is so near, however little it moves
-constexpr float kBand = 0.15F;      // of a body's size, beside what it moves in the frame: so near its parts are looked at
-constexpr float kSame = 1.0e-3F;    // of a body's size: points that are so near are one
-constexpr float kFlat = 5.0e-3F;    // of a body's size: a corner that stands out by less is none
-constexpr float kAlike = 0.99999F;  // cosine: normals of one plane
-constexpr float kWrong = 0.02F;     // of a body's size: more than what is reported, they do not overlap along the reported direction
-constexpr float kOfFace = 0.9F;     // cosine between the normals of a triangle and of a point of it where a body overlaps it
+constexpr float kNear = 0.02F;        // of a body's size: it may touch what is so near, however little it moves
+constexpr float kBand = 0.15F;        // of a body's size, beside what it moves in the frame: so near its parts are looked at
+constexpr float kSame = 1.0e-3F;      // of a body's size: points that are so near are one
+constexpr float kFlat = 5.0e-3F;      // of a body's size: a corner that stands out by less is none
+constexpr float kSlow = 0.01F;        // of a body's size: what moves less in a frame passes by nothing
+constexpr float kTouching = 2.0e-3F;  // of a body's size: so near two that meet are looked at
+constexpr float kAlike = 0.99999F;    // cosine: normals of one plane
+constexpr float kWrong = 0.02F;       // of a body's size: more than what is reported, they do not overlap along the reported direction
+constexpr float kOfFace = 0.9F;       // cosine between the normals of a triangle and of a point of it where a body overlaps it
 
-// Of a contact in the world: the points of both surfaces, the normal towards a, and the distance (negative where they overlap).
+// Of a contact, in the world when the frame begins: the points of both surfaces, the normal towards a, and the distance (negative where
+// they overlap).
 struct Touch {
     vec3 onA, onB, normal;
     float distance;
+};
+
+// Of two objects in a frame.
+struct Motions {
+    FrameMotion a, b;
+    float seconds = 0;             // of the frame
+    float size = 0;                // m, of the smaller
+    float reachA = 0, reachB = 0;  // m, from the centres
+    bool fast(float most) const {  // they move by more than `most` (m) against each other
+        const btScalar turning = a.spin.length() * reachA + b.spin.length() * reachB;
+        return ((a.velocity - b.velocity).length() + turning) * seconds > most;
+    }
+    // A touch found at `time`, where its points and its normal were when the frame began.
+    Touch back(const Touch& t, float time) const {
+        const btTransform toA = a.in(time).inverse(), toB = b.in(time).inverse();
+        Touch then{fromBullet(toA * toBullet(t.onA)), fromBullet(toB * toBullet(t.onB)), fromBullet(toB.getBasis() * toBullet(t.normal)),
+                   0};
+        then.distance = glm::dot(then.onA - then.onB, then.normal);
+        return then;
+    }
 };
 
 // The faces of a shape; null where it has none.
@@ -124,8 +148,13 @@ class Clipped : public btDiscreteCollisionDetectorInterface::Result {
 // Points that Bullet finds up to a distance. The two shapes may be exchanged in what it reports.
 class Closest : public btCollisionWorld::ContactResultCallback {
   public:
-    Closest(const btCollisionObject& a, bool ball, float within, std::vector<Touch>& touches)
-        : a_(&a), ball_(ball), parts_(a.getCollisionShape()->isCompound()), touches_(&touches) {
+    Closest(const btCollisionObject& a, bool ball, float within, const Motions& motions, std::vector<Touch>& touches)
+        : a_(&a),
+          ball_(ball),
+          parts_(a.getCollisionShape()->isCompound()),
+          fast_(motions.fast(kSlow * motions.size)),
+          motions_(&motions),
+          touches_(&touches) {
         m_closestDistanceThreshold = within;
     }
     btScalar addSingleResult(btManifoldPoint& p, const btCollisionObjectWrapper* first, int, int part,
@@ -138,6 +167,9 @@ class Closest : public btCollisionWorld::ContactResultCallback {
         const btVector3 direction = same ? p.m_normalWorldOnB : -p.m_normalWorldOnB;
         const Parts parts{of.getCollisionShape(), by.getCollisionShape(), part, otherPart};
         const bool again = std::exchange(last_, parts) == parts;  // those are clipped
+        if (again && passes_) return 0;
+        passes_ = fast_ && p.m_distance1 > 0 && addApproach(of, by);
+        if (passes_) return 0;
         // Where they overlap, Bullet knows no direction out of a flat triangle: the corners do.
         if (!ball_ && p.m_distance1 < 0 && std::abs(glm::dot(n, normalOf(by, n))) < kOfFace) return 0;
         // Of two faces that overlap a little, Bullet now and then reports a direction along which they overlap by their length, and then
@@ -159,6 +191,28 @@ class Closest : public btCollisionWorld::ContactResultCallback {
     }
 
   private:
+    // Two parts that move fast are in contact as they are when they are nearest. False: they touch when the frame begins.
+    bool addApproach(const btCollisionObjectWrapper& of, const btCollisionObjectWrapper& by) {
+        const btCollisionShape &one = *of.getCollisionShape(), &other = *by.getCollisionShape();
+        if (!one.isConvex() || !other.isConvex()) return false;
+        const MovingShape a{static_cast<const btConvexShape*>(&one), of.getWorldTransform(), motions_->a};
+        const MovingShape b{static_cast<const btConvexShape*>(&other), by.getWorldTransform(), motions_->b};
+        const std::optional<Approach> at = nearestApproach(a, b, motions_->seconds, kTouching * motions_->size);
+        if (!at) return false;
+        std::vector<Touch> then = {{fromBullet(at->onA), fromBullet(at->onB), fromBullet(at->normal), at->distance}};
+        const btTransform ofThen = a.motion.in(at->time) * a.place, byThen = b.motion.in(at->time) * b.place;
+        const btCollisionObjectWrapper movedOf(&of, &one, of.getCollisionObject(), ofThen, of.m_partId, of.m_index);
+        const btCollisionObjectWrapper movedBy(&by, &other, by.getCollisionObject(), byThen, by.m_partId, by.m_index);
+        if (!parts_) Clipped::add(movedOf, movedBy, at->normal, m_closestDistanceThreshold, then);
+        bool some = false;
+        for (const Touch& t : then) {
+            const Touch now = motions_->back(t, at->time);
+            if (!(now.distance >= 0)) continue;  // it turns out of the way
+            touches_->push_back(now);
+            some = true;
+        }
+        return some;
+    }
     // Of a triangle; of another shape `other`.
     static vec3 normalOf(const btCollisionObjectWrapper& of, const vec3& other) {
         if (of.getCollisionShape()->getShapeType() != TRIANGLE_SHAPE_PROXYTYPE) return other;
@@ -172,18 +226,22 @@ class Closest : public btCollisionWorld::ContactResultCallback {
         bool operator==(const Parts&) const = default;
     };
     Parts last_;
-    bool wrong_ = false;  // what is reported of them
+    bool wrong_ = false;   // what is reported of them
+    bool passes_ = false;  // addApproach has added them
     const btCollisionObject* a_;
     bool ball_, parts_;  // it has parts: a point of each will do
+    bool fast_;
+    const Motions* motions_;
     std::vector<Touch>* touches_;
 };
 
 // Corners above, or a little below, the triangles of a mesh: those that the body turns into the mesh later in the frame. What is above is
-// where its centre of mass is.
+// where its centre of mass is. A corner that comes nearer is looked at where it meets the triangle's plane.
 class CornersOnMesh : public btTriangleCallback {
   public:
-    CornersOnMesh(const btTransform& mesh, std::span<const vec3> corners, const vec3& middle, float within, std::vector<Touch>& touches)
-        : mesh_(mesh), corners_(corners), middle_(middle), within_(within), touches_(&touches) {}
+    CornersOnMesh(const btTransform& mesh, std::span<const vec3> corners, const vec3& middle, float within, const Motions& motions,
+                  std::vector<Touch>& touches)
+        : mesh_(mesh), corners_(corners), middle_(middle), within_(within), motions_(&motions), touches_(&touches) {}
     void processTriangle(btVector3* triangle, int, int) override {
         const vec3 a = fromBullet(mesh_ * triangle[0]), b = fromBullet(mesh_ * triangle[1]), c = fromBullet(mesh_ * triangle[2]);
         vec3 n = glm::cross(b - a, c - a);
@@ -195,9 +253,17 @@ class CornersOnMesh : public btTriangleCallback {
             const float distance = glm::dot(n, p - a);
             if (std::abs(distance) > within_) continue;
             const vec3 on = p - distance * n;
-            const auto leftOf = [&](const vec3& from, const vec3& to) { return glm::dot(glm::cross(to - from, on - from), n); };
-            const float x = leftOf(a, b), y = leftOf(b, c), z = leftOf(c, a);
-            if ((x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0)) touches_->push_back({p, on, n, distance});
+            const auto holds = [&](const vec3& place) {
+                const auto leftOf = [&](const vec3& from, const vec3& to) { return glm::dot(glm::cross(to - from, place - from), n); };
+                const float x = leftOf(a, b), y = leftOf(b, c), z = leftOf(c, a);
+                return (x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0);
+            };
+            vec3 meets = on;
+            const vec3 speed = fromBullet(motions_->a.velocityAt(toBullet(p)) - motions_->b.velocityAt(toBullet(on)));
+            const float closing = -glm::dot(speed, n);
+            if (distance > kTouching * motions_->size && closing > 0)
+                meets += std::min(distance / closing, motions_->seconds) * (speed + closing * n);
+            if (holds(meets)) touches_->push_back({p, on, n, distance});
         }
     }
 
@@ -206,6 +272,7 @@ class CornersOnMesh : public btTriangleCallback {
     std::span<const vec3> corners_;
     vec3 middle_;
     float within_;
+    const Motions* motions_;
     std::vector<Touch>* touches_;
 };
 
@@ -280,8 +347,10 @@ class Search {
             const vec3 centre(balls_[a]), nearest = glm::clamp(centre, fromBullet(low), fromBullet(high));
             if (glm::length(centre - nearest) > balls_[a].w + (1 + kNear) * size_[a] + way) return;
             const float near = kBand * size_[a] + (glm::length(states_[a].velocity) * seconds_) + way;
-            touches = between(bodies_[a], *solid.object, *solid.object, near, allowed_[a] + way);
-            if (!bodies_[a].corners.empty()) onMesh(a, *solid.object, allowed_[a] + way, touches);
+            const Motions motions{motionOf(a), motionOf(solid), seconds_,
+                                  size_[a],    size_[a],        reach + glm::length(middle - originOf(solid))};
+            touches = between(bodies_[a], *solid.object, *solid.object, near, allowed_[a] + way, motions);
+            if (!bodies_[a].corners.empty()) onMesh(a, *solid.object, allowed_[a] + way, motions, touches);
         }
         const btCollisionObject& of = *bodies_[a].object;
         filter(touches, size_[a], bodies_[a].ball.w > 0);
@@ -330,7 +399,8 @@ class Search {
     void meet(size_t a, size_t b) {
         if (bodies_[a].ball.w <= 0 && bodies_[b].ball.w > 0 && bodies_[b].moves) std::swap(a, b);  // the ball first
         const float near = kBand * std::min(size_[a], size_[b]) + glm::length(states_[a].velocity - states_[b].velocity) * seconds_;
-        std::vector<Touch> touches = between(bodies_[a], *bodies_[b].hull, *bodies_[b].object, near, allowed_[a] + allowed_[b]);
+        const Motions motions{motionOf(a), motionOf(b), seconds_, std::min(size_[a], size_[b]), size_[a], size_[b]};
+        std::vector<Touch> touches = between(bodies_[a], *bodies_[b].hull, *bodies_[b].object, near, allowed_[a] + allowed_[b], motions);
         filter(touches, std::min(size_[a], size_[b]), bodies_[a].ball.w > 0);
         if (!(bodies_[a].ball.w > 0)) leaveOutline(touches, std::min(size_[a], size_[b]));
         const btCollisionObject &one = *bodies_[a].object, &other = *bodies_[b].object;
@@ -353,10 +423,11 @@ class Search {
   private:
     // What Bullet finds between a body and another or a solid, up to `most` (m) apart. Bodies of many parts are compared as their hulls,
     // and by their parts where these are nearer than `near`.
-    std::vector<Touch> between(const ContactBody& a, btCollisionObject& hull, btCollisionObject& other, float near, float most) const {
+    std::vector<Touch> between(const ContactBody& a, btCollisionObject& hull, btCollisionObject& other, float near, float most,
+                               const Motions& motions) const {
         const auto search = [&](btCollisionObject* one, btCollisionObject* two, float within) {
             std::vector<Touch> touches;
-            Closest closest(*one, a.ball.w > 0, within, touches);
+            Closest closest(*one, a.ball.w > 0, within, motions, touches);
             world_->contactPairTest(one, two, closest);
             return touches;
         };
@@ -364,6 +435,17 @@ class Search {
         const bool parts = a.hull != a.object || &hull != &other;
         if (parts && std::ranges::any_of(touches, [&](const Touch& t) { return t.distance < near; })) return search(a.object, &other, near);
         return touches;
+    }
+    // A ball does not turn: its surface stays where it is.
+    FrameMotion motionOf(size_t k) const {
+        const BodyState& s = states_[k];
+        if (!bodies_[k].moves) return {};
+        if (!(bodies_[k].ball.w > 0)) return {toBullet(s.pose.position), toBullet(s.velocity), toBullet(s.spin), seconds_};
+        const vec3 centre = s.pose.toWorld(vec3(bodies_[k].ball));
+        return {toBullet(centre), toBullet(s.velocityAt(centre)), btVector3(0, 0, 0), seconds_};
+    }
+    static FrameMotion motionOf(const ContactSolid& s) {
+        return {toBullet(originOf(s)), toBullet(s.velocity), toBullet(s.spin), static_cast<btScalar>(s.seconds)};
     }
     static vec3 originOf(const ContactSolid& solid) { return fromBullet(solid.object->getWorldTransform().getOrigin()); }
     BodyContact contact(size_t a, const Touch& t) const {
@@ -398,11 +480,11 @@ class Search {
         if (bodies_[a].ball.w > 0) add(states_[a].pose.toWorld(vec3(bodies_[a].ball)) - bodies_[a].ball.w * n);
         for (const btVector3& corner : bodies_[a].corners) add(states_[a].pose.toWorld(fromBullet(corner)));
     }
-    void onMesh(size_t a, const btCollisionObject& mesh, float within, std::vector<Touch>& touches) const {
+    void onMesh(size_t a, const btCollisionObject& mesh, float within, const Motions& motions, std::vector<Touch>& touches) const {
         std::vector<vec3> corners;
         corners.reserve(bodies_[a].corners.size());
         for (const btVector3& corner : bodies_[a].corners) corners.push_back(states_[a].pose.toWorld(fromBullet(corner)));
-        CornersOnMesh callback(mesh.getWorldTransform(), corners, states_[a].pose.position, within, touches);
+        CornersOnMesh callback(mesh.getWorldTransform(), corners, states_[a].pose.position, within, motions, touches);
         btVector3 low, high;
         const btTransform own = mesh.getWorldTransform().inverse() * bodies_[a].object->getWorldTransform();
         bodies_[a].object->getCollisionShape()->getAabb(own, low, high);

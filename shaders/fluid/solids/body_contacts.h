@@ -18,19 +18,18 @@ STRUCT(PairSpeeds) {
     vec4 spinB;
 };
 
-// m/s, of the point of a against that of b.
-FN vec3 slipOf(PairSpeeds m, ContactState c) {
-    return m.a.xyz + cross(m.spinA.xyz, c.armA.xyz) - m.b.xyz - cross(m.spinB.xyz, c.armB.xyz);
+// m/s, of the point of a against that of b. Arms: m, from the centres of mass.
+FN vec3 slipOf(PairSpeeds m, vec3 armA, vec3 armB) {
+    return m.a.xyz + cross(m.spinA.xyz, armA) - m.b.xyz - cross(m.spinB.xyz, armB);
 }
 
-// The velocities after an impulse (x along the normal, y and z along the tangents) on a, and its opposite on b.
-FN PairSpeeds pushed(PairSpeeds m, ContactState c, vec3 impulse) {
-    if (!SQUARE_BELOW(dot(impulse, impulse), MOST_PUSH)) return m;
-    vec3 push = c.normal.xyz * impulse.x + c.along.xyz * impulse.y + c.across.xyz * impulse.z;
+// The velocities after the impulse `push` (N s) on a, and its opposite on b; `turnA`, `turnB`: rad/s, the spins that it causes.
+FN PairSpeeds pushed(PairSpeeds m, vec3 push, vec3 turnA, vec3 turnB) {
+    if (!SQUARE_BELOW(dot(push, push), MOST_PUSH)) return m;
     m.a = vec4(m.a.xyz + push * m.a.w, m.a.w);
     m.b = vec4(m.b.xyz - push * m.b.w, m.b.w);
-    m.spinA = vec4(m.spinA.xyz + c.turnA.xyz * impulse.x + c.alongA.xyz * impulse.y + c.acrossA.xyz * impulse.z, 0.0f);
-    m.spinB = vec4(m.spinB.xyz - c.turnB.xyz * impulse.x - c.alongB.xyz * impulse.y - c.acrossB.xyz * impulse.z, 0.0f);
+    m.spinA = vec4(m.spinA.xyz + turnA, 0.0f);
+    m.spinB = vec4(m.spinB.xyz - turnB, 0.0f);
     return m;
 }
 
@@ -60,23 +59,22 @@ FN float partingSpeed(float meeting, float restitution, float pull, float second
     return rise + sqrt(rise * rise + speed * speed);
 }
 
-// The impulse of a contact in the next iteration: how it pushes, or its friction. `least`: m/s, at which its points are to part, negative
-// where they may approach.
-FN vec3 nextImpulse(PairSpeeds m, ContactState c, float friction, float least, bool pushes) {
-    vec3 slip = slipOf(m, c);
-    vec3 next = c.impulse.xyz;
-    if (pushes) {
-        next.x = max(next.x - c.normal.w * (dot(slip, c.normal.xyz) - least), 0.0f);
-    } else {
-        next.y = next.y - c.along.w * dot(slip, c.along.xyz);
-        next.z = next.z - c.across.w * dot(slip, c.across.xyz);
-        // Coulomb: the friction of two tangents together.
-        float size = sqrt(next.y * next.y + next.z * next.z);
-        if (size > friction * next.x) {
-            float kept = friction * next.x / size;
-            next.y = next.y * kept;
-            next.z = next.z * kept;
-        }
+// N s: the impulse along the normal in the next iteration. `slip`: m/s, of the points, along it; `least`: m/s, at which they are to part,
+// negative where they may approach.
+FN float nextPush(float impulse, float mass, float slip, float least) {
+    float next = max(impulse - mass * (slip - least), 0.0f);
+    return SQUARE_BELOW(next * next, MOST_PUSH) ? next : 0.0f;
+}
+
+// N s: the friction along the two tangents (y, z) in the next iteration, by Coulomb's law both together. impulse.x: along the normal;
+// `slip`: m/s, along the tangents; `mass`: kg, along them.
+FN vec3 nextFriction(vec3 impulse, vec2 mass, vec2 slip, float friction) {
+    vec3 next = vec3(impulse.x, impulse.y - mass.x * slip.x, impulse.z - mass.y * slip.y);
+    float size = sqrt(next.y * next.y + next.z * next.z);
+    if (size > friction * next.x) {
+        float kept = friction * next.x / size;
+        next.y = next.y * kept;
+        next.z = next.z * kept;
     }
     if (!SQUARE_BELOW(dot(next, next), MOST_PUSH)) next = vec3(0.0f, 0.0f, 0.0f);
     return next;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rivulet {
 
@@ -9,6 +10,7 @@ namespace {
 
 constexpr double kStep = 1.0 / 120;  // s, of a prediction with contacts, at most
 constexpr float kWay = 0.5F;         // of a body's reach in such a step, at most
+constexpr float kCalm = 0.02F;       // m/s: what is as slow in two reports rests; what turns back in the air is so slow in one at most
 constexpr double kMostSteps = 8;     // of each of the two parts of a prediction
 constexpr double kMostMoves = 1024;  // of bodies, in the steps of a part
 
@@ -45,6 +47,11 @@ BodyForecast::BodyForecast(std::span<const Body> bodies)
 }
 
 void BodyForecast::set(std::span<const BodyState> states, std::span<const BodyLoad> loads, double time) {
+    rests_ = std::exchange(known_, true) && time > time_;
+    for (size_t k = 0; k < states.size() && rests_; ++k) {
+        const auto slow = [&](const BodyState& s) { return glm::length(s.velocity) + reach_[k] * glm::length(s.spin) < kCalm; };
+        rests_ = !(mass_[k] > 0) || (slow(states[k]) && slow(states_[k]));
+    }
     states_.assign(states.begin(), states.end());
     loads_.assign(loads.begin(), loads.end());
     time_ = time;
@@ -60,6 +67,8 @@ void BodyForecast::expect(const BodyHost* host, const vec3& gravity, double now,
     for (size_t k = 0; k < states_.size(); ++k)
         acceleration_[k] = mass_[k] > 0 ? gravity + vec3(loads_[k].force / double{mass_[k]}) : vec3(0.0F);
     path_.assign(1, {time_, states_});
+    if (host != nullptr && rests_) path_.push_back({std::max(now, end), states_});
+    if (host != nullptr && rests_) return;
     for (const double until : {now, end}) {
         const double from = path_.back().time, span = until - from;
         if (!(span > 0)) continue;

@@ -16,7 +16,7 @@ class BodyForecast {
     // The same of a later time. Returns false, and ignores them, if later ones are known already.
     bool arrived(std::span<const BodyState> states, std::span<const BodyLoad> loads, double time);
     // Expects their path from there to `now`, and on to `end`, under these loads: freely, or with the contacts that `host` (may be null)
-    // predicts.
+    // predicts. Where all rest, in that report and the one before, they stay, and the host is not asked.
     void expect(const BodyHost* host, const vec3& gravity, double now, double end);
     // Where they are expected at `time`.
     std::vector<BodyState> at(double time) const;
@@ -51,6 +51,8 @@ class BodyForecast {
     std::vector<float> mass_;         // kg; 0: it does not move
     std::vector<float> reach_;        // m, from the centre of mass to the farthest sample
     double time_ = 0;
+    bool known_ = false;  // by a report
+    bool rests_ = false;  // all of them
 };
 
 }  // namespace rivulet

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "shaders/fluid/solids/body_contact_rows.h"
 #include "tests/parity/body_rig.h"
 
 namespace rivulet::body_piles_test {
 namespace {
 
-using body_rig::kGravity, body_rig::kTurn, body_rig::Rig, body_rig::Scenario;
+using body_rig::kFrame, body_rig::kGravity, body_rig::kTurn, body_rig::Rig, body_rig::Scenario;
 
 class BodyPiles : public testing::TestWithParam<const char*> {};
 
@@ -123,6 +124,34 @@ TEST_P(BodyPiles, AFlatBoxBouncesToItsHeight) {
     }
 }
 
+// Frames of other lengths, and so substeps: the impulses with which one begins are those of the one before, times the ratio of their
+// lengths. A tower does not notice.
+TEST_P(BodyPiles, RestInStepsOfAnyLength) {
+    Scenario s;
+    s.step = 0;  // as the water has it, and a whole frame
+    for (int k = 0; k < 8; ++k) s.addBox(vec3(0.1F), vec3(-1, 0.1F * (0.5F + static_cast<float>(k)), 0), 0.5F);
+    Rig rig(GetParam(), s);
+    if (!rig.world) GTEST_SKIP() << rig.absent;
+    Rest most;
+    std::vector<dvec3> half;
+    double least = 1, longest = 0;  // s, substeps
+    for (int frame = 0; frame < 240; ++frame) {
+        const double seconds = frame % 2 == 0 ? kFrame : 0.05 * kFrame;
+        rig.frame(seconds);
+        const double step = seconds / rig.world->lastSubsteps();
+        least = std::min(least, step);
+        longest = std::max(longest, step);
+        if (frame == 120) half = placesOf(rig, s.bodies.size());
+        if (frame < 120) continue;
+        const Rest rest = restOf(rig, half, 0.1);
+        most = {std::max(most.speed, rest.speed), std::max(most.way, rest.way)};
+    }
+    std::printf("%s: steps of %.2f and %.2f ms: %.1e m/s, %.1e m\n", GetParam(), 1000 * least, 1000 * longest, most.speed, most.way);
+    EXPECT_GT(longest, 4 * least);
+    EXPECT_LT(most.speed, 0.1);
+    EXPECT_LT(most.way, 1.0e-3);
+}
+
 // What rests does not bounce, however much gravity adds to its speed in a substep.
 TEST_P(BodyPiles, WhatRestsUnderStrongGravityStays) {
     Scenario s;
@@ -138,6 +167,59 @@ TEST_P(BodyPiles, WhatRestsUnderStrongGravityStays) {
         const Rest rest = restOf(rig, begin, 0.05);
         EXPECT_LT(rest.speed, 2.0e-3) << frame;
         EXPECT_LT(rest.way, 1.0e-4) << frame;
+    }
+}
+
+// More balls than a GPU moves in contact, at once at the floor, in still air and without gravity. The host moves all, for half a second;
+// then the GPU does again. No ball is lost or jumps, and all come back.
+TEST_P(BodyPiles, MoreThanTouchAtOnce) {
+    constexpr int kAcross = 20;
+    static_assert(kAcross * kAcross > MOST_TOUCHING);
+    Scenario s;
+    s.gravity = vec3(0.0F);
+    const float speed = 1, bounce = 0.8F;
+    for (int k = 0; k < kAcross * kAcross; ++k) {
+        const vec3 at(0.25F * static_cast<float>(k % kAcross) - 2.5F, 0.35F, 0.25F * static_cast<float>(k / kAcross) - 2.5F);
+        s.addBall(0.05F, at, vec3(0, -speed, 0), 0.5F, bounce);
+    }
+    Rig rig(GetParam(), s);
+    if (!rig.world) GTEST_SKIP() << rig.absent;
+    rig.mayWait = true;
+    std::vector<BodyState> last = rig.world->bodies();
+    std::vector<bool> byHost;  // then the device's rows are not read
+    double jump = 0, aside = 0, lowest = 1;
+    for (int frame = 0; frame < 75; ++frame) {
+        const size_t before = rig.late->rows.size();
+        rig.frame();
+        byHost.push_back(rig.late->rows.size() == before);
+        // While the GPU moves them, the host does not ask where they are: it learns it late, as in any frame.
+        std::vector<BodyState> now = byHost.back() ? rig.world->bodies() : last;
+        for (size_t k = 0; k < now.size(); ++k) {
+            if (!byHost.back()) {
+                now[k].pose.position = vec3(rig.place(k));
+                now[k].velocity = vec3(rig.velocity(k));
+            }
+            jump = std::max(jump, double{glm::length(now[k].pose.position - last[k].pose.position)});
+            const vec3 off = now[k].pose.position - s.bodies[k].state.pose.position;
+            aside = std::max(aside, double{std::hypot(off.x, off.z)});
+            lowest = std::min(lowest, double{now[k].pose.position.y});
+        }
+        last = now;
+    }
+    const auto begin = std::ranges::find(byHost, true);
+    const auto host = std::ranges::count(byHost, true);
+    std::printf("%s: the host moves them in %td of 75 frames, from frame %td; at most %.4f m a frame, %.1e m aside, lowest %.4f m\n",
+                GetParam(), host, begin - byHost.begin(), jump, aside, lowest);
+    EXPECT_GT(begin - byHost.begin(), 5) << "the GPU moves them until they are near the floor";
+    EXPECT_NEAR(static_cast<double>(host), 30, 1.5) << "half a second";
+    EXPECT_FALSE(byHost.back()) << "then the GPU again";
+    EXPECT_LT(jump, 1.01 * double{speed} * kFrame);
+    EXPECT_LT(aside, 1.0e-3);
+    EXPECT_GT(lowest, 0.049);
+    for (const BodyState& b : last) {
+        EXPECT_GT(b.velocity.y, 0.3F);
+        EXPECT_LE(b.velocity.y, bounce * speed + 1.0e-3F);
+        EXPECT_GT(b.pose.position.y, 0.15F);
     }
 }
 

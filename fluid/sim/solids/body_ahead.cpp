@@ -120,7 +120,10 @@ bool BodyPasses::findContacts(const vec3& gravity, double seconds) {
     // Held by nothing and far from everything since the last report: then they have moved freely.
     if (!held && touching_.touching == 0 && !ask(forecast.time())) return false;
     if (held || touching_.touching > 0 || !found.empty()) {
-        forecast.expect(&host_, gravity, time_, end);
+        if (!held && forecast.rest())
+            forecast.expectRest(end);
+        else
+            forecast.expect(&host_, gravity, time_, end);
         if (!ask(time_)) return false;
     }
     std::vector<bool> moves;

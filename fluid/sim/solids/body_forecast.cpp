@@ -67,8 +67,6 @@ void BodyForecast::expect(const BodyHost* host, const vec3& gravity, double now,
     for (size_t k = 0; k < states_.size(); ++k)
         acceleration_[k] = mass_[k] > 0 ? gravity + vec3(loads_[k].force / double{mass_[k]}) : vec3(0.0F);
     path_.assign(1, {time_, states_});
-    if (host != nullptr && rests_) path_.push_back({std::max(now, end), states_});
-    if (host != nullptr && rests_) return;
     for (const double until : {now, end}) {
         const double from = path_.back().time, span = until - from;
         if (!(span > 0)) continue;
@@ -95,6 +93,11 @@ void BodyForecast::expect(const BodyHost* host, const vec3& gravity, double now,
             path_.push_back(std::move(next));
         }
     }
+}
+
+void BodyForecast::expectRest(double end) {
+    path_.assign(1, {time_, states_});
+    if (end > time_) path_.push_back({end, states_});
 }
 
 std::vector<BodyState> BodyForecast::onward(const Moment& from, double time) const {

@@ -16,8 +16,11 @@ class BodyForecast {
     // The same of a later time. Returns false, and ignores them, if later ones are known already.
     bool arrived(std::span<const BodyState> states, std::span<const BodyLoad> loads, double time);
     // Expects their path from there to `now`, and on to `end`, under these loads: freely, or with the contacts that `host` (may be null)
-    // predicts. Where all rest, in that report and the one before, they stay, and the host is not asked.
+    // predicts.
     void expect(const BodyHost* host, const vec3& gravity, double now, double end);
+    // All were slow, in that report and the one before; then they may be expected to stay until `end`, if nothing pulls them.
+    bool rest() const { return rests_; }
+    void expectRest(double end);
     // Where they are expected at `time`.
     std::vector<BodyState> at(double time) const;
     // xyz (m), w (m): from `from` to `to` (s) the centre of mass stays within w of xyz, unless the mean acceleration since the last arrival

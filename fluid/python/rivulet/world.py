@@ -87,7 +87,7 @@ def _host_of(host: Any, raised: Raised) -> c.BodyHost:
             theirs = np.asarray(found, c.CONTACT).reshape(-1)
             rows = np.empty(len(theirs), c.CONTACT_ROW)
             rows["size"] = c.CONTACT_ROW.itemsize
-            for name in theirs.dtype.names:
+            for name in theirs.dtype.names or ():
                 rows[name] = theirs[name]
             for k in range(len(rows)):
                 add(to, rows.ctypes.data + k * rows.itemsize)

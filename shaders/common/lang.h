@@ -1,8 +1,9 @@
 // The only file that depends on which compiler reads a kernel: C++ (8 particles in 8 lanes), OpenCL C 1.2 or GLSL 4.5.
 // `real` and `real3` hold values of the current particle: one float on a GPU, 8 floats (one lane for each particle) on the CPU.
 // ARGS(RO, RW) is a kernel's interface. Each row RO|RW(number, BlockName, type, name) is a buffer; a comment gives its unit and meaning.
-// Rows count from 1, to 8 at most: OpenGL guarantees no more buffers. BUFFERS follows it; functions that read a buffer come after BUFFERS and take GLOBAL(type, name).
-// The line above KERNEL gives the forms that the build compiles for the cpu (engine/compute/compile_kernels.cmake registers them):
+// Rows count from 1, to 8 at most: OpenGL guarantees no more buffers. BUFFERS follows it; functions that read a buffer come after BUFFERS
+// and take GLOBAL(type, name). The line above KERNEL gives the forms that the build compiles for the cpu
+// (engine/compute/compile_kernels.cmake registers them):
 //   // cpu 1024                                one; a task of the thread pool runs 1024 threads
 //   // cpu 64: MATTER? PERIODIC? | THESIS      five: with and without each of two defines; or with a third alone
 //   // gpu only                                none
@@ -32,7 +33,8 @@ typedef float4 real4;
 #define TO_FLOAT(x) ((float)(x))
 #define TO_DOUBLE(x) ((double)(x))
 #define CONSTANT(T, n, v) __constant T n = v
-#define EXACT /* before a declaration: its value is computed as written, without contraction; in OpenCL a pragma does this, see voxel/crossing.h */
+// Before a declaration: its value is computed as written, without contraction; in OpenCL a pragma does this, see voxel/crossing.h.
+#define EXACT
 #define FLOAT_BITS(f) as_uint(f)
 #define BITS_FLOAT(u) as_float(u)
 #define ATOMIC_ADD(x, v) atomic_add(&(x), v)
@@ -99,7 +101,8 @@ typedef float4 real4;
 #define SHARED_IN(T, n, count)
 #define KERNEL(name, P) void main()
 #define PARAMS params_
-#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE) /* a dispatch has at most 65535 groups: device gl splits larger ones */
+// A dispatch has at most 65535 groups: device gl splits larger ones.
+#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE)
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID (gl_WorkGroupID.x + groupBase_)
 #define BARRIER                \

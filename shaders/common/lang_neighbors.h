@@ -1,5 +1,5 @@
-// The loops over a group's neighbours on the CPU, over the list that fluid/sim/grid/neighbor_grid.cpp built for it. The same names on a GPU:
-// shaders/fluid/grid/neighbors.h. Part of lang_cpp.h, which includes it after lang_lanes.h.
+// The loops over a group's neighbours on the CPU, over the list that fluid/sim/grid/neighbor_grid.cpp built for it. The same names on a
+// GPU: shaders/fluid/grid/neighbors.h. Part of lang_cpp.h, which includes it after lang_lanes.h.
 #pragma once
 
 #define NEIGHBOR_TYPE NeighborLists

@@ -1,5 +1,5 @@
-// Cells of space: those of the flow's grid, and coarser ones with one bit that states whether a drop reaches into them. The bits are stored in
-// a hash table (Teschner et al. 2003) without collision handling: a bit may be set because of another cell.
+// Cells of space: those of the flow's grid, and coarser ones with one bit that states whether a drop reaches into them. The bits are stored
+// in a hash table (Teschner et al. 2003) without collision handling: a bit may be set because of another cell.
 #if !defined(RIVULET_CELLS_H)
 #define RIVULET_CELLS_H
 #define REACHED_WORDS 4096u

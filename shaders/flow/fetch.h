@@ -1,5 +1,5 @@
-// Prefetches the data of the drops that are processed next: they are in random order, and a thread would wait for memory. On the CPU only: a
-// GPU has other threads to run meanwhile, and these loads would race with the threads of those drops.
+// Prefetches the data of the drops that are processed next: they are in random order, and a thread would wait for memory. On the CPU only:
+// a GPU has other threads to run meanwhile, and these loads would race with the threads of those drops.
 #if !defined(RIVULET_FETCH_H)
 #define RIVULET_FETCH_H
 FN void fetchDrops(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(vec4, motion) GLOBAL(uint, skin) GLOBAL(vec4, basis) uint i, uint count) {

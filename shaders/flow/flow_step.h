@@ -1,5 +1,5 @@
-// The parameter block of the kernels of flow on a skin, and the layout of a drop. Shared by C++, GLSL and OpenCL. Lengths in m, in the skin's
-// frame.
+// The parameter block of the kernels of flow on a skin, and the layout of a drop. Shared by C++, GLSL and OpenCL. Lengths in m, in the
+// skin's frame.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"

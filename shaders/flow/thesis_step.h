@@ -1,5 +1,5 @@
-// Parameters of the kernels of thesis mode in addition to FlowStep: the flow is in UV, lengths are shares of the map's edge, velocities are UV/s, and
-// forces are in newtons. Layout shared by C++, GLSL and OpenCL.
+// Parameters of the kernels of thesis mode in addition to FlowStep: the flow is in UV, lengths are shares of the map's edge, velocities are
+// UV/s, and forces are in newtons. Layout shared by C++, GLSL and OpenCL.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"

@@ -1,8 +1,8 @@
 // Hair on ribbons: how much of a pixel a hair covers, and its light (Kajiya and Kay 1989; two highlights as Marschner et al. 2003 found).
 // Needs surface.glsl.
 
-// The covered share of a pixel's width, so that thin hairs fade instead of breaking up, and a factor on the hair's colour. `strand`: see the
-// material. Several hairs on a ribbon differ in place, length and colour.
+// The covered share of a pixel's width, so that thin hairs fade instead of breaking up, and a factor on the hair's colour. `strand`: see
+// the material. Several hairs on a ribbon differ in place, length and colour.
 vec2 hairAt(vec2 uv, vec2 strand) {
     float pixel = max(fwidth(uv.x) * strand.y, 1.0e-4), place = fract(uv.x) * strand.y, number = floor(place), width = strand.x, middle = 0.5;
     vec2 chance = vec2(0.5);

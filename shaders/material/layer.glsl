@@ -17,8 +17,8 @@ struct Liquid {
 
 vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * vec4(layerAbsorption.www, 1.0); }
 
-// Roughness of a surface, -1..1, with features `size` m wide, whatever the scale of its uv; yzw: its slope, 1/m, in the tangent plane. Features
-// of less than two pixels fade out.
+// Roughness of a surface, -1..1, with features `size` m wide, whatever the scale of its uv; yzw: its slope, 1/m, in the tangent plane.
+// Features of less than two pixels fade out.
 vec4 roughnessAt(Tangents t, vec2 uv, float size) {
     float level = -log2(size * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), scale = exp2(floor(level)), share = fract(level);
     const mat2 kTurn = mat2(0.79, 0.61, -0.61, 0.79);  // the lattice of the noise is not along the uv, as many trails are
@@ -28,8 +28,8 @@ vec4 roughnessAt(Tangents t, vec2 uv, float size) {
     return seen * vec4(mix(a.x, b.x, share), gradient(t, mix(a.yz, 2.0 * b.yz, share) * kTurn * scale));
 }
 
-// A film is not flat: it is a cushion, higher in its middle than at its edge, which a map with heights of 10 um and texels of 0.3 mm does not
-// resolve. The slope of one of height 1, from the gradient of the wetness over `size` m; `around`: its mean there.
+// A film is not flat: it is a cushion, higher in its middle than at its edge, which a map with heights of 10 um and texels of 0.3 mm does
+// not resolve. The slope of one of height 1, from the gradient of the wetness over `size` m; `around`: its mean there.
 vec3 cushion(Tangents t, vec2 uv, float lod, float size, out float around) {
     float texels = float(textureSize(layerMap, 0).x);
     float wide = max(log2(size * texels * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), lod);
@@ -40,8 +40,9 @@ vec3 cushion(Tangents t, vec2 uv, float lod, float size, out float around) {
     return gradient(t, vec2(r - l, u - d) * (0.5 / e));
 }
 
-// The slope of a film's surface. A trail is as wide as the wetness says, but its edge is held by pores and fine hairs, and where it is thin,
-// tension draws it into beads (Plateau and Rayleigh). `wet`: 0..1; what the map says becomes what is left of it. `high`: m, of its surface.
+// The slope of a film's surface. A trail is as wide as the wetness says, but its edge is held by pores and fine hairs, and where it is
+// thin, tension draws it into beads (Plateau and Rayleigh). `wet`: 0..1; what the map says becomes what is left of it. `high`: m, of its
+// surface.
 vec3 filmAt(Tangents t, vec2 uv, float lod, inout float wet, out float high) {
     const float kReach = 1.5e-3;  // m, how far an edge may move
     const float kHigh = 3.2e-4;   // m, of a cushion

@@ -22,7 +22,8 @@ uniform mat4 toWorldMatrix;  // POSED: to the body's frame, as normalMatrix
 uniform mat3 normalMatrix;
 out vec3 posWorld;
 out vec3 normalWorld;
-invariant gl_Position;  // the depth pass draws the same vertices with another program, and what is drawn later must have its depth to the bit
+// The depth pass draws the same vertices with another program, and what is drawn later must have its depth to the bit.
+invariant gl_Position;
 void main() {
 #if defined(POSED)
     mat4 pose = poseMatrix();

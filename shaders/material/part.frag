@@ -188,8 +188,8 @@ void main() {
         float out_ = 1.0 - (r0 + (1.0 - r0) * schlick(dot(film, toEye)));
         vec3 dimmed = matte * exp(-layerAbsorption.rgb * (2.0 * q.path)) * out_;
         matte = mix(matte, dimmed, cover);
-        // Metal and glass keep their mirror under the liquid, dimmed by it; a dielectric's is lost to one of nearly its own index, under a film
-        // by half: its coarser relief stands out of it.
+        // Metal and glass keep their mirror under the liquid, dimmed by it; a dielectric's is lost to one of nearly its own index, under a
+        // film by half: its coarser relief stands out of it.
         float kept = max(max(f0.r, f0.g), f0.b) > 0.1 ? out_ : mix(0.5, 0.15, q.drop);
         shine = mix(shine, shine * kept + wetShine, cover);
     }

@@ -1,5 +1,5 @@
-// Glare by a pyramid of blurs (Jimenez 2014). DOWN: halves a picture, each texel from 13 samples. Else: mixes a share of the next wider level,
-// smoothed by a tent of 9 samples, into a level.
+// Glare by a pyramid of blurs (Jimenez 2014). DOWN: halves a picture, each texel from 13 samples. Else: mixes a share of the next wider
+// level, smoothed by a tent of 9 samples, into a level.
 uniform sampler2D source;
 #if !defined(DOWN)
 uniform sampler2D sharp;

@@ -1,4 +1,5 @@
-// The colour of box edges. OVER_WATER: only where the edge is in front of the water, so that edges behind it are refracted and others are not.
+// The colour of box edges. OVER_WATER: only where the edge is in front of the water, so that edges behind it are refracted and others are
+// not.
 #include "shaders/render/frame.glsl"
 uniform float width;
 uniform vec4 lineColour;

@@ -1,5 +1,5 @@
-// What a thin lens does not focus is blurred: each pixel gathers the discs of blur that cover it (after Potmesil and Chakravarty 1981), on a spiral
-// of the golden angle (Vogel 1979).
+// What a thin lens does not focus is blurred: each pixel gathers the discs of blur that cover it (after Potmesil and Chakravarty 1981), on
+// a spiral of the golden angle (Vogel 1979).
 #include "shaders/render/frame.glsl"
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;  // window depth

@@ -1,6 +1,6 @@
-// With HOST_LIGHT, the fog of a host's scene, which the picture already contains. Light that reaches the water from behind is without the fog
-// in front of the water: it is taken out for the distance of the water's surface, and what comes from the water is fogged for this distance.
-// Needs frame.glsl.
+// With HOST_LIGHT, the fog of a host's scene, which the picture already contains. Light that reaches the water from behind is without the
+// fog in front of the water: it is taken out for the distance of the water's surface, and what comes from the water is fogged for this
+// distance. Needs frame.glsl.
 #if defined(HOST_LIGHT)
 // The share of light that passes `distance_`, m.
 float fogPasses(float distance_) {

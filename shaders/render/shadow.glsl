@@ -1,5 +1,5 @@
-// The share of the key light that meshes let pass to a point: their shadow map (exponential variance shadow map: Lauritzen and McCool 2008).
-// Needs frame.glsl.
+// The share of the key light that meshes let pass to a point: their shadow map (exponential variance shadow map: Lauritzen and McCool
+// 2008). Needs frame.glsl.
 uniform sampler2D shadowSharp;  // moments, narrowly blurred
 uniform sampler2D shadowSoft;   // moments, widely blurred
 

@@ -1,5 +1,5 @@
-// Square glazed tiles with joints between them, each tile a little lighter or darker. Averaged over a pixel, so that they neither shimmer nor
-// show moire far away.
+// Square glazed tiles with joints between them, each tile a little lighter or darker. Averaged over a pixel, so that they neither shimmer
+// nor show moire far away.
 
 // The integral from 0 to x of what is 1 within `wide` of the start of each unit interval.
 vec2 jointsUpTo(vec2 x, float wide) { return floor(x) * wide + min(fract(x), wide); }

@@ -1,6 +1,6 @@
 // The share of the key light that the water lets pass to a point. Needs frame.glsl.
-// frame.shadow.y 1: thickness along the light (m), that times its depth, thickness more widely blurred; 2: the light on what it reaches first, which
-// is all that meshes do not shade.
+// frame.shadow.y 1: thickness along the light (m), that times its depth, thickness more widely blurred; 2: the light on what it reaches
+// first, which is all that meshes do not shade.
 uniform sampler2D waterLight;
 uniform vec3 waterAbsorption;   // 1/m
 

@@ -1,4 +1,5 @@
-// One axis of the bilateral Gaussian filter (Tomasi and Manduchi 1998) with which the thesis smooths depth: weights by image and depth distance.
+// One axis of the bilateral Gaussian filter (Tomasi and Manduchi 1998) with which the thesis smooths depth: weights by image and depth
+// distance.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/filter.glsl"
 uniform ivec2 axis;

@@ -1,4 +1,5 @@
-// A photon's picture: a pyramid, whose sum over the texels is 1. Blended by addition. With BASE those that met no water, each a texel of its own.
+// A photon's picture: a pyramid, whose sum over the texels is 1. Blended by addition. With BASE those that met no water, each a texel of
+// its own.
 layout(location = 0) out vec4 colour;
 #if defined(BASE)
 uniform sampler2D flux;  // w: 0: it met no water

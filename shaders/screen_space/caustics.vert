@@ -1,5 +1,5 @@
-// A photon's picture, as wide as its neighbours have spread: a pyramid, so that those of a level surface add up to even light. One that met no
-// water stays where it was, in its own texel alone, and is not drawn here.
+// A photon's picture, as wide as its neighbours have spread: a pyramid, so that those of a level surface add up to even light. One that met
+// no water stays where it was, in its own texel alone, and is not drawn here.
 uniform sampler2D landed;  // texels
 uniform sampler2D flux;    // w: 0: it met no water
 uniform float most;        // texels, of a picture's size

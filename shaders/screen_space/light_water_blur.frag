@@ -1,6 +1,7 @@
-// Blurs the light's map of the water along one axis. The narrow map, for shadows: xy thickness, thickness times depth; z thickness with twice the
-// width. WIDE, for caustics: all with twice the width, and z the share that is covered by water, by which the others are to be divided (normalised
-// convolution: Knutsson and Westin 1993), so that the water does not get thinner towards its edge. FIRST: the source has only xy.
+// Blurs the light's map of the water along one axis. The narrow map, for shadows: xy thickness, thickness times depth; z thickness with
+// twice the width. WIDE, for caustics: all with twice the width, and z the share that is covered by water, by which the others are to be
+// divided (normalised convolution: Knutsson and Westin 1993), so that the water does not get thinner towards its edge. FIRST: the source
+// has only xy.
 uniform sampler2D source;
 uniform ivec2 axis;
 uniform int reach;    // texels either side, of the narrow blur

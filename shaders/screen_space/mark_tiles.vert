@@ -5,5 +5,6 @@ uniform vec2 tiles;  // how many
 void main() {
     gl_PointSize = 1.0;
     gl_Position = lost(particle) ? kNowhere : splatQuad(splatOf(particle));
-    gl_Position.xy += (corner() - 0.5) * 2.0 / tiles * gl_Position.w;  // enlarged by half a texel, so that partly covered texels are drawn too
+    // Enlarged by half a texel, so that partly covered texels are drawn too.
+    gl_Position.xy += (corner() - 0.5) * 2.0 / tiles * gl_Position.w;
 }

@@ -1,5 +1,5 @@
-// A square inside the sphere, facing the camera: objects behind it are behind the near side of the sphere too. It is drawn first, depth only
-// and without fragment shading, and saves shading spheres deep in the water. What has become droplets has none.
+// A square inside the sphere, facing the camera: objects behind it are behind the near side of the sphere too. It is drawn first, depth
+// only and without fragment shading, and saves shading spheres deep in the water. What has become droplets has none.
 // For a sphere that the near plane cuts, the square is drawn just behind that plane.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"

@@ -24,10 +24,10 @@ float spray(vec4 p) { return 1.0 - smoothstep(mix(0.42, 0.3, holds), mix(0.72, 0
 float leaving(vec4 p) { return smoothstep(0.1, 0.5, spray(p)); }
 float ownRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
 
-// Level of detail by size on the screen: of particles whose radius is less than `detail` pixels, a share is drawn, with so large a radius that
-// the sum of their areas stays what it was. The share is the square of their radius over `detail`: as many splats for a pixel at any distance.
-// Which ones, their ids decide: multiples of the golden ratio, of which any share is spread evenly. Those next to be left out shrink first, so
-// that none pops as the camera moves (stochastic simplification, Cook et al. 2007).
+// Level of detail by size on the screen: of particles whose radius is less than `detail` pixels, a share is drawn, with so large a radius
+// that the sum of their areas stays what it was. The share is the square of their radius over `detail`: as many splats for a pixel at any
+// distance. Which ones, their ids decide: multiples of the golden ratio, of which any share is spread evenly. Those next to be left out
+// shrink first, so that none pops as the camera moves (stochastic simplification, Cook et al. 2007).
 // Returns the number of particles that this one represents: 1 where all are drawn, 0 where others represent it.
 const float kFades = 0.25, kFewest = 1.0 / 64.0;
 float representedBy(vec4 p, uint id) {
@@ -80,8 +80,8 @@ vec2 tangents(float c, float depth, float cc, float cz, float zz) {
     return vec2(-b - t, -b + t) / a;
 }
 
-// Clip position of a point that covers the rectangle of the slopes (orthographic: m) `low` to `high` at `depth`, m. It covers what of it is within the
-// picture: a point whose centre lies outside is not drawn.
+// Clip position of a point that covers the rectangle of the slopes (orthographic: m) `low` to `high` at `depth`, m. It covers what of it is
+// within the picture: a point whose centre lies outside is not drawn.
 vec4 pointOver(vec2 low, vec2 high, float depth) {
     vec4 a = frame.projection * vec4(low * spreadAt(depth), -depth, 1.0), b = frame.projection * vec4(high * spreadAt(depth), -depth, 1.0);
     vec2 from = max(min(a.xy, b.xy) / a.w, vec2(-1.0)), to = min(max(a.xy, b.xy) / a.w, vec2(1.0));

@@ -1,5 +1,5 @@
-// Where light goes that the water refracts, for caustics (Wyman and Davis 2006; Shah, Konttinen and Pattanaik 2007): one photon for each texel of the
-// light's map of the water, whose upper and lower faces refract. In the light's space: x and y across, z along the light, m.
+// Where light goes that the water refracts, for caustics (Wyman and Davis 2006; Shah, Konttinen and Pattanaik 2007): one photon for each
+// texel of the light's map of the water, whose upper and lower faces refract. In the light's space: x and y across, z along the light, m.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/fresnel.glsl"
 #include "shaders/render/shadow.glsl"

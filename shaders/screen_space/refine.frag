@@ -1,5 +1,5 @@
-// The surface's depth at twice the resolution, by quadratic B-splines: normals computed from it have no steps at texels. The surface ends where
-// half of the surroundings of a pixel are not water.
+// The surface's depth at twice the resolution, by quadratic B-splines: normals computed from it have no steps at texels. The surface ends
+// where half of the surroundings of a pixel are not water.
 #include "shaders/render/frame.glsl"
 uniform sampler2D source;  // m
 uniform float range;       // m: depths of one surface differ by less from texel to texel

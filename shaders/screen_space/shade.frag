@@ -10,7 +10,8 @@ uniform sampler2D sceneDepth;   // window depth
 uniform sampler2D fluidDepth;   // m
 uniform sampler2D thickness;    // m; with INK y: of liquids other than the world's own
 #if defined(NORMALS)
-uniform sampler2D normals;      // of the surface, view space, unit; w: m of water, instead of thickness. Without it normals come from the depth
+// Of the surface, view space, unit; w: m of water, instead of thickness. Without it normals come from the depth.
+uniform sampler2D normals;
 #else
 uniform sampler2D sharp;        // thickness before its blur, m
 uniform float spacing;          // m
@@ -34,7 +35,8 @@ float waterAt(vec2 uv) {
     return textureLod(thickness, uv, 0.0).r;
 #endif
 }
-// The share of the pixel that is covered: 0 outside of the outline, which is where the water is as thick as a ball of its volume near its rim.
+// The share of the pixel that is covered: 0 outside of the outline, which is where the water is as thick as a ball of its volume near its
+// rim.
 float coverage(float water) {
 #if defined(NORMALS)
     return smoothstep(0.0, 0.5 * radius, water);
@@ -49,9 +51,9 @@ vec3 surfaceAt(ivec2 p, float depth) { return placeAt(vec2(p) + 0.5, depth); }
 
 const vec2 kCrease = vec2(0.15, 0.25);  // of a normal that turns so much from pixel to pixel, each side is looked at
 
-// Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less. At a crease, as at a
-// wall's edge, the pixel belongs to the side that is straighter (Harten et al. 1987): the mean is of neither. `turn`: about how much the normal
-// turns from pixel to pixel. All decisions are gradual, so that rounding decides none.
+// Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less. At a crease, as
+// at a wall's edge, the pixel belongs to the side that is straighter (Harten et al. 1987): the mean is of neither. `turn`: about how much
+// the normal turns from pixel to pixel. All decisions are gradual, so that rounding decides none.
 vec3 slopeHere(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
     float a = surfaceDepth(here + step_), b = surfaceDepth(here - step_);
     float da = abs(a + p.z), db = abs(b + p.z);  // p.z = -depth
@@ -71,8 +73,8 @@ vec3 slopeHere(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
     turn = (ofA * onA + ofB * onB + rest * turn) / sum;
     return ((ofA + 0.5 * rest) * ahead + (ofB + 0.5 * rest) * back) / sum;
 }
-// `fringe`, 0..1: it may be near an outline. There the filter sees one side only and leaves single particles: where the surface further in is
-// even, it runs on.
+// `fringe`, 0..1: it may be near an outline. There the filter sees one side only and leaves single particles: where the surface further in
+// is even, it runs on.
 vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, float fringe, out float turn) {
     vec3 found = slopeHere(here, step_, p, pixel, turn);
     fringe *= 1.0 - smoothstep(6.0 * radius, 9.0 * radius, 9.0 * pixel);  // further in, but not another part of the water
@@ -93,8 +95,8 @@ vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, float fringe, out float
     return found;
 }
 
-// Light that went to all sides, and the same comes from: what a layer throws back, and in `through` what it lets through (Kubelka and Munk 1931;
-// the coefficients of a reduced scattering after Thennadil 2008). `absorbed`, `thrown`: what fades by each, e^-x of a ray being left.
+// Light that went to all sides, and the same comes from: what a layer throws back, and in `through` what it lets through (Kubelka and Munk
+// 1931; the coefficients of a reduced scattering after Thennadil 2008). `absorbed`, `thrown`: what fades by each, e^-x of a ray being left.
 vec3 layer(vec3 absorbed, vec3 thrown, out vec3 through) {
     vec3 k = 2.0 * absorbed, s = 0.75 * thrown, q = max(sqrt(k * (k + 2.0 * s)), 1.0e-4), e = exp(-q), t = (1.0 - e * e) / (1.0 + e * e);
     vec3 rest = (k + s) * t + q;
@@ -102,7 +104,8 @@ vec3 layer(vec3 absorbed, vec3 thrown, out vec3 through) {
     return s * t / rest;
 }
 
-// Screen-space reflection: the colour in the mirror direction, rgb, and its confidence a. View space; step lengths grow with distance. 0 steps: none.
+// Screen-space reflection: the colour in the mirror direction, rgb, and its confidence a. View space; step lengths grow with distance. 0
+// steps: none.
 vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     float t = 3.0 * radius, low = 0.0, high = 0.0;
     for (int k = 0; k < steps; ++k) {
@@ -129,14 +132,15 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     float ownDepth = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r);
     // Far behind what is seen there, the ray has not met it but passed behind it.
     float met = 1.0 - smoothstep(0.5 * radius, 0.5 * radius + 0.1 * high, -p.z - ownDepth);
-    // Its fog is that of the way from the surface. No rounding of the picture grows: the surface's own fog lets no more pass than this takes out.
+    // Its fog is that of the way from the surface. No rounding of the picture grows: the surface's own fog lets no more pass than this
+    // takes out.
     float passes = max(fogPasses(uv * frame.viewport.xy, ownDepth) / max(fogPasses(high), 1.0e-6), fogPasses(pixelOf(from), -from.z));
     return vec4(unfogged(textureLod(sceneColour, uv, 0.0).rgb, passes), edge.x * edge.y * met);
 }
 
 #if defined(INK)
-// A body of another liquid in it is a thin lens: it turns a ray by the difference of the indices times the slope of its thickness. Oils' and
-// honey's index is about this; that of others is nearer to water's, and they are cloudy.
+// A body of another liquid in it is a thin lens: it turns a ray by the difference of the indices times the slope of its thickness. Oils'
+// and honey's index is about this; that of others is nearer to water's, and they are cloudy.
 const float kOtherIndex = 1.47;
 vec2 otherLiquid(float depth) {
     vec2 texel = 1.0 / vec2(textureSize(thickness, 0)), uv = gl_FragCoord.xy * frame.viewport.zw, pixel = pixelSize(depth) * frame.viewport.xy * texel;
@@ -148,7 +152,8 @@ vec2 otherLiquid(float depth) {
 #endif
 
 // A light's glint: GGX (Walter et al. 2007) of water whose normal turns by `turn` from pixel to pixel. The sun is a disc and the water has
-// ripples finer than particles, so that it is nowhere sharper than `kFinest`; and none is brighter than the picture can take without sparkling.
+// ripples finer than particles, so that it is nowhere sharper than `kFinest`; and none is brighter than the picture can take without
+// sparkling.
 const float kFinest = 0.035, kMostGlint = 8.0;
 vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 towards, vec3 light) {
     float nl = dot(n, towards), nv = max(dot(n, toEye), 0.02);
@@ -181,8 +186,8 @@ vec3 shafts(vec3 dir, float through, vec3 absorbed, vec3 reduced) {
 // For an eye inside the water: the point where the ray through a pixel leaves it, m, view space.
 vec3 wayOut(vec2 pixel) { return normalize(sightWay(pixel)) * textureLod(thickness, pixel * frame.viewport.zw, 0.0).r; }
 // The picture for an eye in the water: the scene in the water directly, the scene above through Snell's window, and around the window what
-// the surface mirrors. `scene`: m along the ray; `passed`: the share of light that comes as far as the surface; `deep`: the colour of very deep
-// water.
+// the surface mirrors. `scene`: m along the ray; `passed`: the share of light that comes as far as the surface; `deep`: the colour of very
+// deep water.
 vec3 fromWithin(vec3 dir, float through, float scene, vec3 straight, vec3 passed, vec3 deep) {
     // The surface is taken as level except for its slope by thickness, which is blurred and gets a small weight. A view from above, or
     // through a wall of the box, is not refracted.

@@ -1,5 +1,6 @@
 // Intersection of the ray through a pixel with a sphere or ellipsoid, exact. Needs frame.glsl.
-// False: no hit. `front`: depth of the near point; `through`: length of the ray inside it (m). Parts in front of the near plane are cut away.
+// False: no hit. `front`: depth of the near point; `through`: length of the ray inside it (m). Parts in front of the near plane are cut
+// away.
 bool cutAtNear(float middle, float h, float slant, out float front, out float through) {
     front = max(middle - h, frame.planes.x);
     through = (middle + h - front) * slant;

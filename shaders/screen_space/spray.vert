@@ -1,4 +1,5 @@
-// A particle that has left the body of the water, as the droplets that it stands for: a point or quad over them and their paths during the exposure.
+// A particle that has left the body of the water, as the droplets that it stands for: a point or quad over them and their paths during the
+// exposure.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/lights.glsl"
 #include "shaders/render/shadow.glsl"

@@ -28,7 +28,8 @@ void main() {
 #endif
     float scene = depthOfWindow(texelFetch(sceneDepth, min(ivec2(pixel), ivec2(frame.viewport.xy) - 1), 0).r);
     float r = centreView.w / spacing;
-    float share = min(0.2387324 * standsFor * represented / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
+    // The particle's volume over its sphere's, for spheres that overlap.
+    float share = min(0.2387324 * standsFor * represented / (r * r * r), 1.0);
     float water = share * clamp(scene - front, 0.0, through);
 #if defined(INK)
     thickness = vec2(water, water * other);

@@ -2,8 +2,9 @@
 // no fused multiply-add. Coordinates are in voxels from the grid's low corner; a column's centre is at (y + 1/2, z + 1/2).
 //
 // A triangle's corners are sorted by z. At the height of a row of centres it has two edges, the long one (corner 0 to 2) and a short
-// one (0 to 1 or 1 to 2); it covers the columns between them. An edge is always evaluated from its lower end, so that faces that share it agree
-// on the columns that it separates, whatever the rounding: a closed mesh has no leak, and no column is counted twice (a half-open rule).
+// one (0 to 1 or 1 to 2); it covers the columns between them. An edge is always evaluated from its lower end, so that faces that share it
+// agree on the columns that it separates, whatever the rounding: a closed mesh has no leak, and no column is counted twice (a half-open
+// rule).
 //
 // Include after BUFFERS; the buffer is `corners`.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)

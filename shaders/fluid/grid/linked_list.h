@@ -1,5 +1,5 @@
-// fluid.grid linked_list: one list of particles per cell (thesis 4.2), in the buffer that otherwise holds cellStart: the first particle of each
-// cell, then the number of slots, then for each slot the next particle in its list. Nothing is sorted; slots in no list are marked.
+// fluid.grid linked_list: one list of particles per cell (thesis 4.2), in the buffer that otherwise holds cellStart: the first particle of
+// each cell, then the number of slots, then for each slot the next particle in its list. Nothing is sorted; slots in no list are marked.
 #if !defined(RIVULET_LINKED_LIST_H)
 #define RIVULET_LINKED_LIST_H
 #define LIST_END 0xffffffffu

@@ -102,9 +102,9 @@ FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {
 // FOR_SEEN of pair terms that are zero from the distance h on. `at`: the particle's position, `position`: the buffer of its neighbours'.
 // A GPU first finds which of up to 32 neighbours are within h, a sixth of those in the cells, and then computes the terms of these alone:
 // all threads of a warp go through the long part for a few neighbours, not for each that one of them has. A bit says that a neighbour is
-// within h. FOR_ALL_PAIRS, the first sweep of a step, keeps the bits of the first 64 neighbours in each row behind the entries of cellStart,
-// and later sweeps, those for images and further iterations included, load them. FOR_ALL_PAIRS needs NEIGHBORS_KEPT in place of the row
-// RO(1, Neighbors, ..). PAIR_REACH: of the bits, over h; more than 1 if particles move between sweeps.
+// within h. FOR_ALL_PAIRS, the first sweep of a step, keeps the bits of the first 64 neighbours in each row behind the entries of
+// cellStart, and later sweeps, those for images and further iterations included, load them. FOR_ALL_PAIRS needs NEIGHBORS_KEPT in place of
+// the row RO(1, Neighbors, ..). PAIR_REACH: of the bits, over h; more than 1 if particles move between sweeps.
 #undef FOR_PAIRS
 #undef FOR_ALL_PAIRS
 #undef END_PAIRS

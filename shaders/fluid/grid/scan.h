@@ -2,8 +2,8 @@
 #if LOCAL_SIZE != 256
 #error "the scan kernels run in work groups of 256: hand the define LOCAL_SIZE=256"
 #endif
-// `part`: work-group memory of 272 elements: 16 rows of 16, each followed by a gap against bank conflicts; `rows`: 16 elements, the rows' sums.
-// Sets `before` to the sum of `own` over the threads before `t`, `total` to the sum over all.
+// `part`: work-group memory of 272 elements: 16 rows of 16, each followed by a gap against bank conflicts; `rows`: 16 elements, the rows'
+// sums. Sets `before` to the sum of `own` over the threads before `t`, `total` to the sum over all.
 #define SCAN_GROUP(part, rows, t, own, before, total)       \
     part[t + (t >> 4)] = own;                               \
     BARRIER;                                                \

@@ -1,5 +1,5 @@
-// Moves a particle for one step: limits its speed, and keeps it inside the box and the planes. Include after fluid/solids/walls.h; the buffers are
-// `density` (over the rest density), positionNext and velocityNext. xyz v, w 1 if the speed was limited.
+// Moves a particle for one step: limits its speed, and keeps it inside the box and the planes. Include after fluid/solids/walls.h; the
+// buffers are `density` (over the rest density), positionNext and velocityNext. xyz v, w 1 if the speed was limited.
 FN vec4 slowedTo(vec3 v, float most) {
     float speed2 = dot(v, v);
     if (speed2 > most * most) return vec4(v * (most / sqrt(speed2)), 1.0f);

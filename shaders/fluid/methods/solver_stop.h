@@ -9,8 +9,8 @@ inline
 #else
 FN
 #endif
-    // Estimates the residual after the last change of the pressures from the one before it: it is assumed to fall by the same factor as in the
-    // previous iteration.
+    // Estimates the residual after the last change of the pressures from the one before it: it is assumed to fall by the same factor as in
+    // the previous iteration.
     float
     residualAhead(float found, float before, uint iteration) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)

@@ -109,8 +109,8 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
             }
             next = next + change;
             there = fieldAt(PASS(bandDistance) f, next);
-            // Else along the gradient, while that increases the distance. Midway between two walls the gradient is short, and so is the correction:
-            // in a channel that is too narrow for contact, particles do not oscillate.
+            // Else along the gradient, while that increases the distance. Midway between two walls the gradient is short, and so is the
+            // correction: in a channel that is too narrow for contact, particles do not oscillate.
             for (int r = 0; r < 2 && !w.corner; ++r) {
                 float depth = f.contact - there.distance;
                 if (depth < CONTACT_SLACK * f.voxel) break;
@@ -122,8 +122,8 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
                 s.touched = true;
             }
         }
-        // A segment inside one voxel whose end is CONTACT_VOXELS from the mesh is inside a voxel that no triangle touches; every other segment
-        // is traced.
+        // A segment inside one voxel whose end is CONTACT_VOXELS from the mesh is inside a voxel that no triangle touches; every other
+        // segment is traced.
         vec3 a = toCells(f, s.position);
         vec3 b = toCells(f, next);
         vec3 across = floor(a) - floor(b);

@@ -1,6 +1,6 @@
-// The thesis's collision with voxels (thesis 4.3), kept as the baseline: one rounded sample per step of the longest axis, which misses walls
-// at their corners; normals from smoothed voxels (24)(25), which are as uneven as the voxels; the velocity into the wall is removed (26); the
-// particle moves back by one voxel along its path. Include after fluid/solids/contact.h.
+// The thesis's collision with voxels (thesis 4.3), kept as the baseline: one rounded sample per step of the longest axis, which misses
+// walls at their corners; normals from smoothed voxels (24)(25), which are as uneven as the voxels; the velocity into the wall is removed
+// (26); the particle moves back by one voxel along its path. Include after fluid/solids/contact.h.
 #define THESIS_BACK 1.0f  // voxels
 #define THESIS_REACH 3    // voxels, h of the spiky kernel
 

@@ -34,7 +34,8 @@ FN vec2 surfaceOf(GLOBAL(uint, bandNormal) FieldParams f, uint code) {
     return vec2(BITS_FLOAT(bandNormal[at]), BITS_FLOAT(bandNormal[at + 1u]));
 }
 
-// Response to all walls, with restitution where `bounces` is 1; velocity that one response adds into another wall is removed in the next round.
+// Response to all walls, with restitution where `bounces` is 1; velocity that one response adds into another wall is removed in the next
+// round.
 FN vec3 respondToAll(GLOBAL(uint, bandNormal) FieldParams f, vec3 u, Walls w, float bounces) {
     vec2 surface = surfaceOf(PASS(bandNormal) f, w.codeA);
     vec3 v = respond(u, w.normalA, surface.x, surface.y * bounces);

@@ -1,10 +1,10 @@
 // Mirror images of the neighbours behind the walls near a particle (Libersky et al. 1993): a wall is a plane of symmetry. The loop
 // FOR_IMAGES .. END_IMAGES around a loop over the neighbours runs it once for the neighbours themselves (image 0), and once for their
-// reflections in each wall, edge and corner of the particle's near walls. SEEN(d) is the vector to the particle from the neighbour's image, for
-// d from the neighbour itself; SEEN_VELOCITY(v) is the image's velocity. A particle is among its own images. The loop over the neighbours is
-// FOR_SEEN, in a step's first sweep FOR_ALL_SEEN with KEEP and MAY_SEE.
-// An image is never nearer than its neighbour, so the loop over the neighbours finds all. Between plane walls the images of i for j are those
-// of j for i: forces from densities conserve energy, and momentum along the wall; what is left is the load on the wall.
+// reflections in each wall, edge and corner of the particle's near walls. SEEN(d) is the vector to the particle from the neighbour's image,
+// for d from the neighbour itself; SEEN_VELOCITY(v) is the image's velocity. A particle is among its own images. The loop over the
+// neighbours is FOR_SEEN, in a step's first sweep FOR_ALL_SEEN with KEEP and MAY_SEE.
+// An image is never nearer than its neighbour, so the loop over the neighbours finds all. Between plane walls the images of i for j are
+// those of j for i: forces from densities conserve energy, and momentum along the wall; what is left is the load on the wall.
 // Include after BUFFERS, with the buffer `nearWalls`. In a world without walls (OPEN) all of this is nothing.
 #undef FOR_IMAGES
 #undef END_IMAGES
@@ -56,8 +56,8 @@ FN Resting restingOn(Reflections m, float contact) {
     return r;
 }
 FN int within_(real4 wall, float h) { return ANY_LANE(wall.w < h) ? 1 : 0; }
-// An image behind an edge is this many times as far: 1 for walls at right angles. Between others such images are not needed (the images of the
-// walls cover the edge already, or nearly), and more than 10 times as far is beyond the support.
+// An image behind an edge is this many times as far: 1 for walls at right angles. Between others such images are not needed (the images of
+// the walls cover the edge already, or nearly), and more than 10 times as far is beyond the support.
 FN real beyondEdge_(real4 a, real4 b) {
     real c = dot(a.xyz, b.xyz);
     return 1.0f + max0(max(c, -c) - 0.45f) * 20.0f;
@@ -89,8 +89,8 @@ FN real3 seenInSeveral_(Reflections m, int image, real far_, real3 apart) {
     if ((image & 4) != 0) d = reflected_(m.third, d);
     return d * far_;
 }
-// Where walls meet at an obtuse angle, their images overlap. An image that is deeper behind another wall than behind its own is among the images
-// of that wall already: it moves out of reach, the faster the deeper it is.
+// Where walls meet at an obtuse angle, their images overlap. An image that is deeper behind another wall than behind its own is among the
+// images of that wall already: it moves out of reach, the faster the deeper it is.
 FN real3 seenInOne_(Reflections m, real4 mirror, real3 apart) {
     real3 d = reflected_(mirror, apart);
     real deepest = max(max(depthBehind_(m.first, d), depthBehind_(m.second, d)), depthBehind_(m.third, d));

@@ -14,12 +14,13 @@ FN WallList noNearWalls(float h) {
     w.speed = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     return w;
 }
-// Walls that matter are nearer than this (m): behind others, no image is within the support radius h, because particles keep a distance to walls.
+// Walls that matter are nearer than this (m): behind others, no image is within the support radius h, because particles keep a distance to
+// walls.
 FN float wallReach(float h, float contact) { return h - 0.8f * contact; }
 FN bool isWall(vec4 entry, float h) { return entry.w < 3.0f * h; }
 FN bool sameDirection_(vec4 wall, vec3 n, float h) { return isWall(wall, h) && dot(wall.xyz, n) > 0.9f; }
-// Keeps the nearest wall of each direction, and the nearest three directions. n: unit normal into the fluid; d, h and reach: m; speed: m/s, along
-// n.
+// Keeps the nearest wall of each direction, and the nearest three directions. n: unit normal into the fluid; d, h and reach: m; speed: m/s,
+// along n.
 FN WallList addNearWall(WallList list, vec3 n, float d, float speed, float h, float reach) {
     if (!(d < reach)) return list;
     WallList w = list;

@@ -1,5 +1,5 @@
-// Adds the impulse that a wall gives to a particle to the probes that measure this wall. Include after BUFFERS; the buffers are `probes` and
-// `rows`; `t` is the thread, below PROBE_THREADS.
+// Adds the impulse that a wall gives to a particle to the probes that measure this wall. Include after BUFFERS; the buffers are `probes`
+// and `rows`; `t` is the thread, below PROBE_THREADS.
 #undef PROBE_ON_BOX
 #undef PROBE_ON_PLANE
 #undef PROBE_ON_STILL
@@ -14,8 +14,8 @@
 #define PROBE_ON_DEFORMING 4u
 #define PROBE_ON_BODY 5u
 
-// The share of a contact within low .. high along one axis: the contact covers a spacing along the wall, and is a point across it, so that the
-// load on a region changes evenly with its edges. A point on the edge of a region without thickness counts in full.
+// The share of a contact within low .. high along one axis: the contact covers a spacing along the wall, and is a point across it, so that
+// the load on a region changes evenly with its edges. A point on the edge of a region without thickness counts in full.
 FN float footprintWithin(float x, float n, float low, float high, float spacing) {
     float e = max(spacing * sqrt(max(1.0f - n * n, 0.0f)), 1.0e-3f * spacing);
     float slack = 0.5e-3f * spacing;

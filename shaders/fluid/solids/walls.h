@@ -1,6 +1,6 @@
-// The box and the planes: a particle's centre keeps the distance `contact` from them; the velocity into a wall gets the response of respond.h.
-// In a world without walls (OPEN) there is no response. Include after BUFFERS and fluid/solids/respond.h; the buffer is `planes`,
-// two vec4 per plane: unit normal, w m; friction, restitution.
+// The box and the planes: a particle's centre keeps the distance `contact` from them; the velocity into a wall gets the response of
+// respond.h. In a world without walls (OPEN) there is no response. Include after BUFFERS and fluid/solids/respond.h; the buffer is
+// `planes`, two vec4 per plane: unit normal, w m; friction, restitution.
 STRUCT(Walled) {
     vec3 position;  // m
     vec3 velocity;  // m/s

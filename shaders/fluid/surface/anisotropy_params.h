@@ -10,7 +10,8 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-CONSTANT(float, ANISOTROPY_SUPPORT, 2.0f);  // spacings: R on a GPU, where the neighbours at hand reach no further; the reference's is ANISOTROPY_SUPPORT_HOST
+// Spacings: R on a GPU, where the neighbours at hand reach no further; the reference's is ANISOTROPY_SUPPORT_HOST.
+CONSTANT(float, ANISOTROPY_SUPPORT, 2.0f);
 CONSTANT(float, ANISOTROPY_SUPPORT_HOST, 3.0f);
 CONSTANT(float, ANISOTROPY_SMOOTHING, 0.9f);  // lambda: share of the way to the mean of its neighbours that a centre goes
 CONSTANT(float, ANISOTROPY_FULL, 0.15f);  // variance along each axis amid the water, R^2: 1 / ks

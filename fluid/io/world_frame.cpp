@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "fluid/sim/sources/dry.h"
 #include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
@@ -27,7 +28,7 @@ std::vector<Part> partsOf(const FluidWorld& world, RecordedFrame& frame) {
     frame.spacing = particles.spacing;
     frame.halves = device.backend() != Backend::gl && !device.glShare().by;  // as FluidUpload brings them over
     frame.box = {world.params().box.min, world.params().box.max};
-    frame.dry = world.dry();
+    frame.dry = placedDry(world.ownDry(), world.expectedBodies());
     const size_t foam = particles.foam != nullptr ? particles.foamSlots : 0, slots = particles.count > 0 ? particles.slots : 0;
     std::vector<Part> parts = {{particles.foamDrawn, foam, &frame.foam},  {particles.foamVelocity, foam, &frame.foamVelocity},
                                {particles.drawn, slots, &frame.position}, {particles.velocity, slots, &frame.velocity},
@@ -71,7 +72,9 @@ void keepDrawn(RecordedFrame& frame) {
 
 void frameOf(const FluidWorld& world, RecordedFrame& frame) {
     Device& device = world.device();
-    for (const Part& p : partsOf(world, frame)) device.read(*p.from, std::as_writable_bytes(std::span(*p.to)));
+    const std::vector<Part> parts = partsOf(world, frame);
+    frame.dry = world.dry();
+    for (const Part& p : parts) device.read(*p.from, std::as_writable_bytes(std::span(*p.to)));
     if (!frame.id.empty()) device.read(*world.particles().id, std::as_writable_bytes(std::span(frame.id)));
     keepDrawn(frame);
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fluid/io/world_frame.h"
+#include "fluid/sim/sources/dry.h"
 #include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
@@ -75,7 +76,7 @@ Status FluidSnapshot::takeOnGpu(const FluidWorld& world) {
     frame_.time = world.time();
     frame_.spacing = particles.spacing;
     frame_.box = {world.params().box.min, world.params().box.max};
-    frame_.dry = world.dry();
+    frame_.dry = placedDry(world.ownDry(), world.expectedBodies());
     count_ = particles.count > 0 ? particles.slots : 0;
     foamCount_ = particles.foam != nullptr ? particles.foamSlots : 0;
     Device& device = world.device();

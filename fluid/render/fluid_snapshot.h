@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/compute/device.h"
@@ -30,6 +31,8 @@ class FluidSnapshot {
     // arrived() has returned true, the snapshot is empty. Another take() ends it.
     Status takeLater(const FluidWorld& world, std::span<const vec4> drops = {}, std::span<const vec4> pendants = {});
     bool arrived();
+    // Where dry volumes are in it, instead of where they were expected.
+    void cutAt(std::vector<DryVolume> dry) { frame_.dry = std::move(dry); }
     bool empty() const { return !taken_; }
     double time() const { return frame_.time; }  // s, simulated
 

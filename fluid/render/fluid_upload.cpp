@@ -155,7 +155,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);
     if (Status s = bringDrops(drops, pendants, out); !s) return s.error();
-    out.dry = world.dry();
+    out.dry = world.bodyRows().current ? world.ownDry() : world.dry();
     out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
     // The shader of the points reads normals in place of velocities. Before the first step there are no normals.
     std::vector<Array> arrays;

@@ -42,7 +42,8 @@ struct FluidView {
     // Spray, foam and bubbles: GL buffer names, as ParticleView::foamDrawn and foamVelocity.
     std::array<unsigned, 2> foam = {};
     uint32_t foamCount = 0;
-    std::vector<DryVolume> dry = {};  // where the surface is cut: FluidWorld::dry()
+    // Where the surface is cut: FluidWorld::dry(). With hasNewPoses() FluidWorld::ownDry(): those of bodies in their frames.
+    std::vector<DryVolume> dry = {};
     // The wetness of solids: GL buffer names, WetnessView::cells and values. 0: all is dry.
     unsigned wetCells = 0, wetness = 0;
     size_t wetCellBytes = 0, wetnessBytes = 0;

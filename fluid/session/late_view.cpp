@@ -6,6 +6,7 @@
 
 #include "fluid/scene/collider_motion.h"
 #include "fluid/session/session.h"
+#include "fluid/sim/sources/dry.h"
 
 namespace rivulet {
 
@@ -30,6 +31,7 @@ void LateView::moveBodies(Frame& frame, const FluidWorld& world) {
     for (size_t n = 0; n < frame.solids.nodes().size(); ++n)
         if (const int body = frame.solids.nodes()[n].body; body >= 0 && static_cast<size_t>(body) < states->size())
             frame.solids.moveBody(n, matrixOf((*states)[static_cast<size_t>(body)].pose));
+    frame.snapshot.cutAt(placedDry(frame.dry, *states));
 }
 
 void LateView::readMeshes(Scene& solids) {
@@ -55,6 +57,7 @@ Result<LateView::Shown> LateView::show(FluidUpload& upload, const Session& sessi
     frame.solids = session.solids();
     frame.time = now;
     frame.moved = session.world().bodyRows().current;
+    frame.dry = session.world().ownDry();
     readMeshes(frame.solids);
     if (Status asked = frame.snapshot.takeLater(session.world(), session.flows().airDrops(), session.flows().pendants()); !asked) {
         frames_.pop_back();

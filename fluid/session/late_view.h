@@ -10,6 +10,7 @@
 #include "engine/scene/scene.h"
 #include "fluid/render/fluid_snapshot.h"
 #include "fluid/render/fluid_upload.h"
+#include "shaders/fluid/sources/dry_volume.h"
 
 namespace rivulet {
 
@@ -32,7 +33,8 @@ class LateView {
         FluidSnapshot snapshot;
         Scene solids;
         double time = 0;
-        bool moved = false;  // the device has moved the bodies of this frame: `solids` has them where they were expected
+        bool moved = false;               // the device has moved the bodies of this frame: `solids` has them where they were expected
+        std::vector<DryVolume> dry = {};  // as FluidWorld::ownDry
     };
     void dropOlder();
     void moveBodies(Frame& frame, const FluidWorld& world);

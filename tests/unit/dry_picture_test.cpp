@@ -3,9 +3,13 @@
 #include <rivulet_glad/gl.h>
 
 #include <cmath>
+#include <memory>
+#include <vector>
 
+#include "engine/gpu/buffer.h"
 #include "fluid/render/fluid_snapshot.h"
 #include "fluid/render/fluid_upload.h"
+#include "shaders/fluid/solids/body_state.h"
 #include "tests/unit/host_water.h"
 
 namespace rivulet::dry_picture_test {
@@ -97,6 +101,46 @@ TEST_F(DryPicture, ShowsNoWaterInAWell) {
             ASSERT_TRUE(moved);
             EXPECT_EQ(draw(*moved, look, well).within, uncut.within);
         }
+}
+
+// A volume of a body that a GPU moves is given in the body's frame: the picture cuts it where the rows on the device have the body, and not
+// where another body is.
+TEST_F(DryPicture, CutsWhereTheDeviceHasTheBody) {
+    FluidParams p = testing::hostWater();
+    p.spacing = 0.03F;
+    const DryParams box{.position = vec3(0.5F, 0.2F, 0.5F), .rotation = vec3(0, 25, 0), .size = vec3(0.32F, 1.2F, 0.22F)};
+    auto world = FluidWorld::create(*device_, p, {}, {}, Sources{.dry = {box}});
+    ASSERT_TRUE(world) << world.error().message;
+    FluidLookParams look;
+    FluidUpload upload;
+    Result<FluidView> fluid = upload.view(**world, look);
+    ASSERT_TRUE(fluid);
+    const auto well = [](vec2 at) {
+        const float angle = glm::radians(25.0F), x = at.x - 0.5F, z = at.y - 0.5F;
+        return std::abs(std::cos(angle) * x - std::sin(angle) * z) < 0.158F && std::abs(std::sin(angle) * x + std::cos(angle) * z) < 0.108F;
+    };
+    const Changed inWorld = draw(*fluid, look, well);
+    const Pose body{vec3(0.3F, 0.4F, 0.9F), glm::angleAxis(1.1F, glm::normalize(vec3(1, -2, 0.5F)))};
+    std::vector<DeviceBody> rows(2, DeviceBody{});
+    rows[0].position = vec4(5, 5, 5, 0);
+    rows[0].rotation = vec4(0, 0, 0, 1);
+    rows[1].position = vec4(body.position, 0.0F);
+    rows[1].rotation = vec4(body.rotation.x, body.rotation.y, body.rotation.z, body.rotation.w);
+    const Result<gpu::Buffer> onDevice = gpu::Buffer::from(rows);
+    ASSERT_TRUE(onDevice) << onDevice.error().message;
+    fluid->bodies = onDevice->name();
+    fluid->bodyCount = 2;
+    fluid->bodiesMoved = std::make_shared<const char>();
+    DryVolume& v = fluid->dry.at(0);
+    const quat turn = glm::conjugate(body.rotation) * quat(v.turn.w, v.turn.x, v.turn.y, v.turn.z);
+    v.centre = vec4(body.toOwn(vec3(v.centre)), v.centre.w);
+    v.turn = vec4(turn.x, turn.y, turn.z, turn.w);
+    v.reach.w = 2;
+    const Changed moved = draw(*fluid, look, well);
+    EXPECT_EQ(moved.within, 0U);
+    EXPECT_NEAR(static_cast<double>(moved.elsewhere), static_cast<double>(inWorld.elsewhere), 20);
+    v.reach.w = 1;
+    EXPECT_GT(draw(*fluid, look, well).within, 50U) << "the other body is far away";
 }
 
 }  // namespace

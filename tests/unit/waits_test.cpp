@@ -58,13 +58,14 @@ Calls waiting(const GlCalls& calls) {
     return some;
 }
 
-// A ball in the middle of a pool: it bobs, or is dropped from there.
-std::string ballInPool(float y) {
+// A ball in the middle of a pool: it bobs, or is dropped from there. `carries`: a volume that stays dry.
+std::string ballInPool(float y, bool carries) {
     const std::string path = ::testing::TempDir() + "waits_ball_in_pool.json";
+    const std::string more = R"(, "dry": [{"position": [0.8, )" + std::to_string(y) + R"(, 0.8], "size": [0.4, 0.2, 0.1], "body": 0}])";
     std::ofstream(path) << R"({"name": "ball_in_pool", "doc": "", "fluid": {"method": "pbf", "spacing": 0.08,
         "box": {"max": [1.6, 2, 1.6]}, "blocks": [{"max": [1.6, 0.64, 1.6]}]},
         "bodies": [{"shape": "sphere", "radius": 0.12, "density": 400, "position": [0.8, )"
-                        << y << R"(, 0.8]}]})";
+                        << y << R"(, 0.8]}])" << (carries ? more : "") << "}";
     return path;
 }
 
@@ -75,6 +76,7 @@ struct Case {
     bool lands = false;  // drops land in the frames that count
     float ballAt = 0;    // m: instead of `scene`, ballInPool()
     bool held = false;   // a hand draws the first body through the water
+    bool carries = false;
 };
 
 const Case kRain{"rain_on_spot", {"flow.0.mapSize=256"}, 12, true};
@@ -82,6 +84,7 @@ const Case kShower{"shower", {"flow.0.mapSize=256", "fluid.spacing=0.01", "emitt
 const Case kBobs{"", {}, 3, false, 0.72F};
 const Case kWetBall{"", {"fluid.wetness.on=true"}, 3, false, 0.72F};
 const Case kHeld{.scene = "", .set = {}, .ballAt = 0.72F, .held = true};
+const Case kCarries{.scene = "", .set = {}, .ballAt = 0.72F, .carries = true};
 const Case kDropped{"", {}, 15, false, 1.26F};  // 0.5 m above the water: it hits it in frame 19
 // A head that speaks in the rain.
 const Case kCrying{"crying", {"flow.0.mapSize=256", "flow.0.sources.3.rate=60000"}, 12, true};
@@ -119,8 +122,8 @@ class Behind {
 
 // What waits in kFrames, drawn. `bodyWaits`: FluidStats::bodyWaits in these.
 Calls waitsOf(const Case& c, const ShaderFiles& files, Device& device, uint64_t& bodyWaits) {
-    const Result<SceneFile> scene =
-        loadScene(*c.scene == 0 ? ballInPool(c.ballAt) : RIVULET_SOURCE_DIR "/assets/scenes/" + std::string(c.scene) + ".json", c.set);
+    const Result<SceneFile> scene = loadScene(
+        *c.scene == 0 ? ballInPool(c.ballAt, c.carries) : RIVULET_SOURCE_DIR "/assets/scenes/" + std::string(c.scene) + ".json", c.set);
     EXPECT_TRUE(scene) << scene.error().message;
     if (!scene) return {};
     auto session = Session::create(*scene, device, {});
@@ -192,13 +195,13 @@ class Waits : public ::testing::Test {
 };
 
 // A GPU waits for no frame of these: particles of all methods with foam, moving and deforming solids, drops and wetness on skins, rain on
-// them, a ball that bobs, also with a wet surface, falls into a pool or is drawn through it by a hand, ducks that touch each other and the
-// walls.
+// them, a ball that bobs, also with a wet surface, falls into a pool, is drawn through it by a hand or carries a dry volume, ducks that
+// touch each other and the walls.
 TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
     for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}},
                           Case{"paddle_wheel", {"fluid.spacing=0.08", "fluid.method=dfsph"}}, Case{"waving_sheet", {"fluid.spacing=0.08"}},
-                          Case{"cold_bottle", {}}, kRain, kShower, kCrying, kBobs, kWetBall, kHeld, kDropped, kDucks}) {
-        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt << (c.held ? " held" : ""));
+                          Case{"cold_bottle", {}}, kRain, kShower, kCrying, kBobs, kWetBall, kHeld, kCarries, kDropped, kDucks}) {
+        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt << (c.held ? " held" : c.carries ? " carries" : ""));
         const std::unique_ptr<Device> device = makeGlDevice(files_, {});
         uint64_t bodyWaits = 0;
         const Calls waits = waitsOf(c, files_, *device, bodyWaits);
@@ -210,8 +213,8 @@ TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
 // The same on OpenCL, as a window draws it.
 TEST_F(Waits, FramesOnOpenClWaitForWhatTheTableNamesAlone) {
     for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}}, kRain, kShower, kCrying,
-                          kBobs, kWetBall, kHeld, kDropped, kDucks}) {
-        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt << (c.held ? " held" : ""));
+                          kBobs, kWetBall, kHeld, kCarries, kDropped, kDucks}) {
+        SCOPED_TRACE(::testing::Message() << c.scene << c.ballAt << (c.held ? " held" : c.carries ? " carries" : ""));
         Result<std::unique_ptr<Device>> device = makeClDevice(files_);
         if (!device && testing::mayLackOpenGl()) GTEST_SKIP() << device.error().message;
         ASSERT_TRUE(device) << device.error().message;

@@ -178,7 +178,7 @@ void BodyPasses::moveOnDevice(const StepParams& step) {
     settled_ = false;
 }
 
-void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
+void BodyPasses::beginFrame(const vec3& gravity, double seconds) {
     if (!mayBeAhead_ || !any() || sampleCount_ == 0) return;
     if (!late_) {
         late_ = std::make_shared<Late>(Late{BodyForecast(bodies_), std::vector<uint32_t>(bodies_.size()), {}});
@@ -194,14 +194,13 @@ void BodyPasses::beginFrame(const vec3& gravity, double seconds, bool exact) {
         pushed_.assign(bodies_.size(), {});
         pushedFrom_ = time_;
     }
-    if (exact) settle();
     for (size_t k = 0; k < bodies_.size(); ++k) {
         const uint32_t faults = std::exchange(late_->faults[k], 0U);
         if ((faults & BODY_MISLED) != 0) misled_ = k;
         late_->forecast.frame(k, (faults & BODY_STRAYED) != 0);
         if ((faults & BODY_STRAYED) != 0) ++strays_;
     }
-    if (exact || time_ < late_->crowdedUntil || !findContacts(gravity, seconds)) {
+    if (time_ < late_->crowdedUntil || !findContacts(gravity, seconds)) {
         settle();
         touching_ = {};
         late_->moved = {};

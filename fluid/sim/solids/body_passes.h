@@ -75,8 +75,8 @@ class BodyPasses {
     };
     Samples samples() const { return {&slotOf_, &own_, &arm_, &deviceBodies_}; }
     // A frame of up to `seconds` begins. On a GPU it finds the contacts (BodyHost::contacts) with which the GPU moves the bodies, and does
-    // not wait; `exact`: the GPU does not, since something else needs their states in each substep.
-    void beginFrame(const vec3& gravity, double seconds, bool exact);
+    // not wait.
+    void beginFrame(const vec3& gravity, double seconds);
     // Sums the forces and moves the bodies: on the GPU, or it waits for the forces (some KB, one round trip) and calls the host.
     void advance(const StepParams& step, Particles& particles, double seconds);
     void endFrame(double time);                           // s, of the world
@@ -87,8 +87,8 @@ class BodyPasses {
     // FluidWorld::bodiesAt; `time` is not now.
     std::optional<std::vector<BodyState>> statesAt(double time) const;
     void settleNear(const vec3& p, float spacing);  // only if a body may be at `p` (m)
-    uint64_t waits() const { return waits_; }       // of all functions here on a GPU, so far
-    uint64_t strays() const { return strays_; }     // bodies that moved further than foreseen while they were free: on a GPU, late
+    uint64_t waits() const { return waits_; }    // of all functions here on a GPU, so far
+    uint64_t strays() const { return strays_; }  // bodies that moved further than foreseen while they were free: on a GPU, late
     // The body for which the host last returned a state that is not finite; the body has kept its state.
     std::optional<size_t> misled() const { return misled_; }
     // Back to t = 0.

@@ -20,6 +20,15 @@ Pose poseOf(const DryParams& p) {
             glm::angleAxis(angles.z, vec3(0, 0, 1)) * glm::angleAxis(angles.y, vec3(0, 1, 0)) * glm::angleAxis(angles.x, vec3(1, 0, 0))};
 }
 
+DryVolume volumeOf(const DryParams& p, const Pose& pose, float frame) {
+    return {vec4(pose.position, p.shape == "box" ? 0.0F : 1.0F), vec4(0.5F * p.size, frame),
+            vec4(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w)};
+}
+
+size_t bodyOf(const DryParams& p, const DryBodies& bodies) {
+    return static_cast<size_t>(std::ranges::find(bodies.ids, static_cast<uint32_t>(p.body)) - bodies.ids.begin());
+}
+
 }  // namespace
 
 void DryParams::visit(ParamVisitor& v) {
@@ -52,12 +61,42 @@ std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, const DryBo
     for (const DryParams& d : volumes) {
         Pose pose = poseOf(d);
         if (d.body >= 0) {
-            const auto k = static_cast<size_t>(std::ranges::find(bodies.ids, static_cast<uint32_t>(d.body)) - bodies.ids.begin());
+            const size_t k = bodyOf(d, bodies);
             const Pose &start = bodies.starts[k], &now = bodies.states[k].pose;
             pose = {now.toWorld(start.toOwn(pose.position)), glm::normalize(now.rotation * glm::conjugate(start.rotation) * pose.rotation)};
         }
-        placed.push_back({vec4(pose.position, d.shape == "box" ? 0.0F : 1.0F), vec4(0.5F * d.size, 0.0F),
-                          vec4(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w)});
+        placed.push_back(volumeOf(d, pose, 0));
+    }
+    return placed;
+}
+
+std::vector<DryVolume> ownDry(std::span<const DryParams> volumes, const DryBodies& bodies) {
+    std::vector<DryVolume> own;
+    own.reserve(volumes.size());
+    for (const DryParams& d : volumes) {
+        Pose pose = poseOf(d);
+        float frame = 0;
+        if (d.body >= 0) {
+            const size_t k = bodyOf(d, bodies);
+            const Pose& start = bodies.starts[k];
+            pose = {start.toOwn(pose.position), glm::normalize(glm::conjugate(start.rotation) * pose.rotation)};
+            frame = static_cast<float>(k + 1);
+        }
+        own.push_back(volumeOf(d, pose, frame));
+    }
+    return own;
+}
+
+std::vector<DryVolume> placedDry(std::span<const DryVolume> own, std::span<const BodyState> states) {
+    std::vector<DryVolume> placed(own.begin(), own.end());
+    for (DryVolume& v : placed) {
+        const auto body = static_cast<size_t>(v.reach.w);
+        if (body == 0 || body > states.size()) continue;
+        const Pose& now = states[body - 1].pose;
+        const quat turn = glm::normalize(now.rotation * quat(v.turn.w, v.turn.x, v.turn.y, v.turn.z));
+        v.centre = vec4(now.toWorld(vec3(v.centre)), v.centre.w);
+        v.reach.w = 0;
+        v.turn = vec4(turn.x, turn.y, turn.z, turn.w);
     }
     return placed;
 }

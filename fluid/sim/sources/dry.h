@@ -41,6 +41,9 @@ struct DryBodies {
 };
 // In the world, with the bodies where they are.
 std::vector<DryVolume> placedDry(std::span<const DryParams> volumes, const DryBodies& bodies);
+// Those that move with a body in its frame, wherever it is; and in the world, with the bodies in `states`.
+std::vector<DryVolume> ownDry(std::span<const DryParams> volumes, const DryBodies& bodies);
+std::vector<DryVolume> placedDry(std::span<const DryVolume> own, std::span<const BodyState> states);
 // Whether it has moved by more than `way` (m), turned or changed its size.
 bool hasMoved(const DryVolume& from, const DryVolume& to, float way);
 Bounds boundsOf(const DryVolume& volume);  // m, around it

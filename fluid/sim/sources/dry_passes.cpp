@@ -1,12 +1,23 @@
 #include "fluid/sim/sources/dry_passes.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "shaders/fluid/sources/dry_params.h"
 
 namespace rivulet {
 
-Status DryPasses::prepare(Device& device) {
+namespace {
+bool isCarried(const DryParams& d) { return d.body >= 0; }
+}  // namespace
+
+Status DryPasses::prepare(Device& device, std::span<const DryParams> volumes) {
+    if (!dryOfRows_ && device.backend() != Backend::cpu && std::ranges::any_of(volumes, isCarried)) {
+        const Define bodies{"BODIES", "1"};
+        Result<Kernel> made = device.kernel("fluid/sources/dry", std::span(&bodies, 1));
+        if (!made) return made.error();
+        dryOfRows_ = *made;
+    }
     if (device_ != nullptr) return ok();
     Result<Kernel> dry = device.kernel("fluid/sources/dry"), forget = device.kernel("fluid/sources/forget");
     Result<Buffer> places = device.allocate(kMostDry * sizeof(DryVolume)), counter = device.allocate(sizeof(uint32_t));
@@ -26,8 +37,14 @@ void DryPasses::set(std::span<const DryParams> volumes, std::vector<uint32_t> id
                     std::span<const BodyState> bodies) {
     params_.assign(volumes.begin(), volumes.end());
     bodiesChanged(std::move(ids), std::move(starts));
-    volumes_ = placedDry(params_, {ids_, starts_, bodies});
+    place(bodies);
 }
+
+bool DryPasses::anyCarried() const { return std::ranges::any_of(params_, isCarried); }
+
+std::vector<DryVolume> DryPasses::own() const { return ownDry(params_, {ids_, starts_, {}}); }
+
+void DryPasses::place(std::span<const BodyState> bodies) { volumes_ = placedDry(params_, DryBodies{ids_, starts_, bodies}); }
 
 void DryPasses::bodiesChanged(std::vector<uint32_t> ids, std::vector<Pose> starts) {
     ids_ = std::move(ids);
@@ -35,14 +52,19 @@ void DryPasses::bodiesChanged(std::vector<uint32_t> ids, std::vector<Pose> start
 }
 
 void DryPasses::run(const StepParams& step, const Buffer& cellStart, Particles& particles, std::span<const BodyState> bodies,
-                    std::span<const NamedBuffer> remembered) {
+                    const BodyRows& rows, std::span<const NamedBuffer> remembered) {
     if (!any()) return;
-    volumes_ = placedDry(params_, {ids_, starts_, bodies});
-    device_->write(places_, std::as_bytes(std::span(volumes_)));
+    place(bodies);
+    const bool byRows = rows.current && anyCarried();
+    device_->writeAll<DryVolume>(places_, byRows ? own() : volumes_);
     DryParamsBlock block{};
     block.step = step;
     block.volumes = static_cast<uint32_t>(volumes_.size());
-    device_->run(dry_, block, {&cellStart, &places_, &particles.positionNext, &particles.velocityNext, &counter_}, step.awakeSlots);
+    if (byRows)
+        device_->run(*dryOfRows_, block, {&cellStart, &places_, &particles.positionNext, &particles.velocityNext, &counter_, rows.rows},
+                     step.awakeSlots);
+    else
+        device_->run(dry_, block, {&cellStart, &places_, &particles.positionNext, &particles.velocityNext, &counter_}, step.awakeSlots);
     for (const NamedBuffer& b : remembered)
         if (b.byId) device_->run(forget_, step, {&cellStart, &particles.positionNext, &particles.id, b.buffer}, step.awakeSlots);
 }
@@ -56,7 +78,7 @@ void DryPasses::report() {
 uint64_t DryPasses::removed() const { return *removed_; }
 
 void DryPasses::reset(std::span<const BodyState> bodies) {
-    volumes_ = placedDry(params_, {ids_, starts_, bodies});
+    place(bodies);
     removed_ = std::make_shared<uint32_t>(0);
     if (device_ != nullptr) device_->fill(counter_, 0);
 }

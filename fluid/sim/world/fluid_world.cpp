@@ -230,7 +230,7 @@ Status FluidWorld::setSources(const Sources& next) {
         return badInput("fluid.grid linked_list does not support dry volumes: choose fluid.grid sorted");
     if (Status s = checkDry(next.dry, w.bodies.ids()); !s) return s;
     if (!next.dry.empty())
-        if (Status s = w.dry.prepare(*w.device); !s) return s;
+        if (Status s = w.dry.prepare(*w.device, next.dry); !s) return s;
     std::vector<EmitterParams> emitters;
     emitters.reserve(next.emitters.size());
     for (const Emitter& e : next.emitters) emitters.push_back(e.params);
@@ -247,7 +247,15 @@ Status FluidWorld::setSources(const Sources& next) {
     return ok();
 }
 
-const std::vector<DryVolume>& FluidWorld::dry() const { return impl_->dry.volumes(); }
+const std::vector<DryVolume>& FluidWorld::dry() const {
+    if (impl_->dry.anyCarried() && impl_->bodies.rows().current) {
+        impl_->bodies.settle();
+        impl_->dry.place(impl_->bodies.states());
+    }
+    return impl_->dry.volumes();
+}
+
+std::vector<DryVolume> FluidWorld::ownDry() const { return impl_->dry.own(); }
 
 Status FluidWorld::Impl::prepareProbes(const FluidParams& next) {
     std::optional<ProbePasses> made;

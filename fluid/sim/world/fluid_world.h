@@ -84,12 +84,12 @@ class FluidWorld {
     Status setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces. Error: as create
     void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, one group per force
     // Sets the emitters, sinks and dry volumes. With as many as before, their shapes and meshes stay; with another number, or none, all
-    // emitters begin anew: particles that were due and waited for room are dropped. Emitters that are added spawn into free slots: give the
-    // world some with fluid.maxParticles or Sources::more. Where their number changes this waits for a GPU. Error (badInput): as setParams;
-    // with fluid.grid linked_list, or in a world that exchanges water, another number; an emitter with a liquid of its own, in a world that
-    // began with one liquid.
+    // emitters begin anew: particles that were due and waited for room are dropped. Added emitters spawn into free slots (see
+    // fluid.maxParticles, Sources::more). Another number waits for a GPU. Error (badInput): as setParams; with fluid.grid linked_list, or
+    // in a world that exchanges water, another number; an emitter with a liquid of its own, in a world that began with one liquid.
     Status setSources(const Sources& sources);
-    const std::vector<DryVolume>& dry() const;  // Sources::dry, where the last step left them
+    const std::vector<DryVolume>& dry() const;  // Sources::dry, where the last step left them; of those that move with bodies, as bodies()
+    std::vector<DryVolume> ownDry() const;      // without waiting: those that move with a body in its frame (ownDry of dry.h)
 
     // Walls that are added, moved at once and removed while the world runs: planes, fields, moving solids and surfaces of `solids` in place
     // of those there are; bodies stay, those of `solids` are not read. `poses`: of solids.rigid now; empty: their own, which are those at

@@ -240,7 +240,6 @@ Status FluidWorld::Impl::removeInside(const std::function<bool(const vec3&)>& wi
 
 void FluidWorld::Impl::setDry(const std::vector<DryParams>& volumes) {
     if (volumes == dry.params()) return;  // a slider of the look sets them again
-    bodies.settle();
     dry.set(volumes, bodies.ids(), bodies.starts(), bodies.states());
     hasFree = true;
 }

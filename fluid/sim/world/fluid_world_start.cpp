@@ -39,7 +39,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     traits.follows = sourceSetup.expectedDeposit == 0 && !traits.sleeps;  // deposits come at any place
     if (Status s = checkDry(sourceSetup.dry, bodies.ids()); !s) return s;
     if (!sourceSetup.dry.empty()) {
-        if (Status s = dry.prepare(*device); !s) return s;
+        if (Status s = dry.prepare(*device, sourceSetup.dry); !s) return s;
         dry.set(sourceSetup.dry, bodies.ids(), bodies.starts(), bodies.states());
     }
     // Before millions of particles are made.

@@ -99,7 +99,7 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     if (const std::optional<size_t> body = bodies.misled())
         report(fmt::format("the host's solver gave body {} a state that is not finite: the body keeps its last state", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
-    dry.run(step, grid->cellStart(), particles, bodies.states(), remembered);
+    dry.run(step, grid->cellStart(), particles, bodies.states(), bodies.rows(), remembered);
     sources.run({step, params, *grid, particles, solids, bodies, dry.volumes(), remembered}, clock.time + to * clock.frameLength, dt, last);
     if (device->interrupted()) return false;
     if (sleep)
@@ -228,8 +228,7 @@ int FluidWorld::Impl::stepFrame(const FluidInputs& inputs, double seconds) {
     if (sleep) disturbSleep();
     iterations = 0;
     if (probes) probes->begin();
-    const bool carried = std::ranges::any_of(dry.params(), [](const DryParams& d) { return d.body >= 0; });
-    bodies.beginFrame(gravity, frame.pieces * frame.length, carried);
+    bodies.beginFrame(gravity, frame.pieces * frame.length);
     double simulated = 0;
     int substeps = 0, done = 0;
     bool stop = false;

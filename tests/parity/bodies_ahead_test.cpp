@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,7 @@
 #include "shaders/fluid/solids/body_state.h"
 #include "shaders/fluid/world/step_params.h"
 #include "tests/parity/devices.h"
+#include "tests/parity/late_device.h"
 
 namespace rivulet::bodies_ahead_test {
 namespace {
@@ -355,6 +357,57 @@ TEST_P(BodiesAhead, ABallComesBackFromAWall) {
     EXPECT_LT(expected, 0.01) << "states of a frame earlier, continued through the bounce";
     EXPECT_EQ(frames, 45);
     EXPECT_EQ(waits, 0U);
+}
+
+// An emitter fills a box in which a ball bobs, on a GPU that is two frames behind: no frame waits to know where the ball is. As many
+// particles are spawned as on the cpu, about, and none so near to the ball that it is shot away, or inside it.
+TEST_P(BodiesAhead, EmittersPourBesideThem) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    FluidParams p = pool("pbf", 0.25F);
+    p.fixedStep = static_cast<float>(kFrame / 4);
+    const Solids solids{.bodies = {ball(vec3(0.25F, 0.4F, 0.25F))}};
+    Sources sources;
+    sources.seconds = 1;
+    sources.emitters.resize(1);
+    sources.emitters[0].params = {.shape = "box", .litresPerSecond = 40, .position = vec3(0.25F, 0.4F, 0.25F), .size = vec3(0.3F)};
+    LateDevice late(*gpu->device, 1);
+    const std::unique_ptr<Device> cpu = makeTestCpu();
+    auto made = FluidWorld::create(late, p, solids, {}, sources), host = FluidWorld::create(*cpu, p, solids, {}, sources);
+    ASSERT_TRUE(made && host);
+    double deepest = 0, deepestOfHost = 0, fastest = 0, fastestOfHost = 0;
+    const auto depthIn = [](const vec3& at, FluidWorld& world) {
+        double most = 0;
+        for (const vec3& x : positions(world)) most = std::max(most, 0.1 - double{glm::length(x - at)});
+        return most;
+    };
+    const auto speedOf = [](FluidWorld& world) {
+        double most = 0;
+        const ParticleView view = world.particles();
+        const std::vector<vec4> x = world.device().readAll<vec4>(*view.position, view.slots),
+                                v = world.device().readAll<vec4>(*view.velocity, view.slots);
+        for (size_t i = 0; i < x.size(); ++i)
+            if (x[i].w >= 0) most = std::max(most, double{glm::length(vec3(v[i]))});
+        return most;
+    };
+    for (int frame = 0; frame < 30; ++frame) {
+        (*made)->step({.gravity = p.gravity}, kFrame);
+        (*host)->step({.gravity = p.gravity}, kFrame);
+        late.frameEnds();
+        deepest = std::max(deepest, depthIn(vec3(late.rows.back()[0].position), **made));
+        deepestOfHost = std::max(deepestOfHost, depthIn((*host)->bodies()[0].pose.position, **host));
+        fastest = std::max(fastest, speedOf(**made));
+        fastestOfHost = std::max(fastestOfHost, speedOf(**host));
+    }
+    const double particle = std::pow(double{p.spacing}, 3), a = (*host)->stats().emitted / particle,
+                 b = (*made)->stats().emitted / particle;
+    std::printf("%s: %.0f spawned, %.0f on the cpu; at most %.4f m inside the ball (%.4f m); fastest %.2f m/s, %.2f on the cpu\n",
+                GetParam(), b, a, deepest, deepestOfHost, fastest, fastestOfHost);
+    EXPECT_EQ((*made)->stats().bodyWaits, 0U);
+    EXPECT_GT(a, 50);
+    EXPECT_NEAR(b, a, 0.1 * a);
+    EXPECT_LT(deepest, deepestOfHost + 0.3 * double{p.spacing});
+    EXPECT_LT(fastest, 1.5 * fastestOfHost);
 }
 
 // Two meshes: one stands, one moves to and fro. Contacts are found as soon as the ball may meet one of them on its way.

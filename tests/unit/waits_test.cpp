@@ -58,10 +58,12 @@ Calls waiting(const GlCalls& calls) {
     return some;
 }
 
-// A ball in the middle of a pool: it bobs, or is dropped from there. `carries`: a volume that stays dry.
+// A ball in the middle of a pool: it bobs, or is dropped from there. `carries`: a volume that stays dry, into which it rains.
 std::string ballInPool(float y, bool carries) {
     const std::string path = ::testing::TempDir() + "waits_ball_in_pool.json";
-    const std::string more = R"(, "dry": [{"position": [0.8, )" + std::to_string(y) + R"(, 0.8], "size": [0.4, 0.2, 0.1], "body": 0}])";
+    const std::string more = R"(, "dry": [{"position": [0.8, )" + std::to_string(y) + R"(, 0.8], "size": [0.4, 0.2, 0.1], "body": 0}],
+        "emitters": [{"position": [0.8, )" +
+                             std::to_string(y + 0.25F) + R"(, 0.8], "radius": 0.2, "litresPerSecond": 20}])";
     std::ofstream(path) << R"({"name": "ball_in_pool", "doc": "", "fluid": {"method": "pbf", "spacing": 0.08,
         "box": {"max": [1.6, 2, 1.6]}, "blocks": [{"max": [1.6, 0.64, 1.6]}]},
         "bodies": [{"shape": "sphere", "radius": 0.12, "density": 400, "position": [0.8, )"
@@ -195,8 +197,8 @@ class Waits : public ::testing::Test {
 };
 
 // A GPU waits for no frame of these: particles of all methods with foam, moving and deforming solids, drops and wetness on skins, rain on
-// them, a ball that bobs, also with a wet surface, falls into a pool, is drawn through it by a hand or carries a dry volume, ducks that
-// touch each other and the walls.
+// them, a ball that bobs, also with a wet surface, falls into a pool, is drawn through it by a hand or carries a dry volume into which it
+// rains, ducks that touch each other and the walls.
 TEST_F(Waits, FramesWaitForWhatTheTableNamesAlone) {
     for (const Case& c : {Case{"dam_break", {"fluid.spacing=0.08", "fluid.method=pbf", "fluid.foam.most=500"}},
                           Case{"paddle_wheel", {"fluid.spacing=0.08", "fluid.method=dfsph"}}, Case{"waving_sheet", {"fluid.spacing=0.08"}},

@@ -98,11 +98,6 @@ BodyRows BodyPasses::rows() const {
 
 std::optional<std::vector<BodyState>> BodyPasses::statesAt(double time) const { return late_ ? late_->states.at(time) : std::nullopt; }
 
-void BodyPasses::settleNear(const vec3& p, float spacing) {
-    for (size_t k = 0; k < bodies_.size() && isAhead(); ++k)
-        if (const vec4& ball = motionRows_[k].ball; glm::length(p - vec3(ball)) < ball.w + reach_[k] + 2 * spacing) settle();
-}
-
 bool BodyPasses::findContacts(const vec3& gravity, double seconds) {
     BodyForecast& forecast = late_->forecast;
     const double end = time_ + seconds;

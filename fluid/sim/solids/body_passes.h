@@ -86,7 +86,6 @@ class BodyPasses {
     BodyRows rows() const;
     // FluidWorld::bodiesAt; `time` is not now.
     std::optional<std::vector<BodyState>> statesAt(double time) const;
-    void settleNear(const vec3& p, float spacing);  // only if a body may be at `p` (m)
     uint64_t waits() const { return waits_; }    // of all functions here on a GPU, so far
     uint64_t strays() const { return strays_; }  // bodies that moved further than foreseen while they were free: on a GPU, late
     // The body for which the host last returned a state that is not finite; the body has kept its state.

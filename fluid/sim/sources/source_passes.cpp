@@ -204,7 +204,6 @@ void SourcePasses::dropUnfit(const World& world) {
                 const auto [from, to] = taken.equal_range(keyOf(cell + ivec3(k % 3, k / 3 % 3, k / 9) - 1));
                 for (auto it = from; it != to && fits; ++it) fits = glm::dot(it->second - p, it->second - p) >= nearest2;
             }
-            if (fits) world.bodies.settleNear(p, spacing_);
             fits = fits && world.solids.maySpawn(p, spacing_) && world.bodies.maySpawn(p, spacing_) && !isDry(world.dry, p);
             if (fits) taken.emplace(keyOf(cell), p);
         }

@@ -38,7 +38,7 @@ class SourcePasses {
         const NeighborGrid& grid;
         Particles& particles;  // sorted as the substep sorted them
         const SolidPasses& solids;
-        BodyPasses& bodies;
+        const BodyPasses& bodies;  // as far as the host knows where they are
         std::span<const DryVolume> dry;
         std::span<const NamedBuffer> remembered;  // of the method: its state per particle is removed with the particle
     };

@@ -231,7 +231,7 @@ Result<BodyContact> Bodies::contactOf(const rivulet_body_contact& c, size_t bodi
     to.onB = b.toOwn(vectorOf(c.on_b));
     to.radiusA = c.radius_a;
     to.radiusB = c.radius_b;
-    to.normal = glm::conjugate(b.rotation) * vectorOf(c.normal);
+    to.normal = glm::conjugate(!solid && c.radius_b > 0 ? a.rotation : b.rotation) * vectorOf(c.normal);
     to.velocityB = vectorOf(c.velocity_b);
     to.spinB = vectorOf(c.spin_b);
     to.centreB = vectorOf(c.centre_b);

@@ -68,7 +68,9 @@ typedef struct rivulet_body_contact {
     /* m: in the frame of a; in that of b, of a solid in the world when the frame begins. With a radius it is the centre of a ball, and the
        surface is so far from it, whichever way the ball turns. */
     float on_a[3], on_b[3], radius_a, radius_b;
-    float normal[3]; /* unit, from b to a; in the frame of b, of a solid in the world */
+    /* Unit, from b to a: in the frame of b (of a, where b is a body with a radius), of a solid in the world. In the frame b is taken for a
+       plane through on_b: what passes by must have its contact where it comes nearest, or the plane bars its way. */
+    float normal[3];
     /* Of a solid that moves: m/s of the point centre_b (m, in the world when the frame begins), and rad/s, as it turns about that point; it
        moves so for seconds_b (s) from the frame's begin on, 0: not at all. */
     float velocity_b[3], spin_b[3], centre_b[3];
@@ -94,7 +96,7 @@ typedef struct rivulet_body_host {
        never. It passes to `add`, with `to`, all contacts that may act in the next `seconds`, while the bodies are about in `states` and the
        centre of mass of each stays in its ball: 4 floats each, xyz and the radius, m, in the world. `add` copies them, and must not be
        called when contacts has returned. It returns 1; or 0: only the host can move them in this frame, for instance because it holds one.
-       After 1, passed is called for each substep instead of advance. A contact that cannot be: no body moves in this frame, and the step
+       After 1, passed is called for each substep instead of advance, unless more than 384 bodies have contacts or memory is full. A contact that cannot be: no body moves in this frame, and the step
        returns RIVULET_FAILED with a sentence about it. */
     int32_t (*contacts)(void* user, const rivulet_body_state* states, const float* balls, size_t count, double seconds,
                         rivulet_add_contact add, void* to);

@@ -142,6 +142,7 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
             if (!pose) return pose.error();
             poses.push_back(*pose);
         }
+        world->bodies.forget();
         // Walls of an incomplete world do not change, nor any while a stop is asked.
         if (world->world->lastStep() && !world->context->device->stopAsked()) {
             for (const std::string& wrong : world->walls.arrive(*world->world)) world->context->log.error(wrong);
@@ -159,7 +160,6 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
             world->walls.moveBack(before);
             return sound;
         }
-        world->bodies.forget();
         rivulet_context& context = *world->context;
         collectTimes(context);
         to.deviceMs = context.deviceMs - world->deviceMs;  // of all its worlds: passes are not counted per world

@@ -294,7 +294,9 @@ struct BulletSolids::Impl {
         const auto mass = static_cast<float>(b.getMass());
         const btVector3 arm = b.getWorldTransform() * to(by.at) - b.getWorldTransform().getOrigin();
         const vec3 place = from(b.getWorldTransform().getOrigin() + arm), velocity = from(b.getVelocityInLocalPoint(arm));
-        b.applyForce(to(springOf(place, velocity, by.to, by.rate, by.most, static_cast<float>(usual)) * mass), arm);
+        const btVector3& inverse = b.getInvInertiaDiagLocal();
+        const float light = 1 + mass * arm.length2() * inverse[inverse.maxAxis()];
+        b.applyForce(to(springOf(place, velocity, by.to, by.rate, by.most, static_cast<float>(usual), light) * mass), arm);
         b.applyCentralForce(to(-gravity * mass));  // at its middle: else it would hang from the grip and swing
         b.setAngularVelocity(b.getAngularVelocity() * calmOf(static_cast<float>(seconds)));
     }

@@ -39,10 +39,11 @@ double turnedBetween(const BodyState& a, const BodyState& b) {  // rad
     return 2 * std::acos(std::min(1.0F, std::abs(glm::dot(a.pose.rotation, b.pose.rotation))));
 }
 
-// The spring's pull, N over the mass, in double: critically damped, softer in long steps, limited.
-dvec3 springOf(const BodyPull& pull, const BodyState& s, double seconds) {
-    const dvec3 arm = dquat(s.pose.rotation) * dvec3(pull.at);
-    const double rate = std::min(double{pull.rate}, 0.1 / seconds);
+// The spring's pull, N over the mass, in double: critically damped, softer in long steps and at points that are light, limited.
+dvec3 springOf(const BodyPull& pull, const BodyShape& shape, const BodyState& s, double seconds) {
+    const dvec3 arm = dquat(s.pose.rotation) * dvec3(pull.at), inertia(shape.inertia);
+    const double least = std::min({inertia.x, inertia.y, inertia.z}), light = 1 + double{shape.mass} * glm::dot(arm, arm) / least;
+    const double rate = std::min(double{pull.rate}, 0.1 / seconds) * std::min(1.0, 8 / light);
     const dvec3 velocity = dvec3(s.velocity) + glm::cross(dvec3(s.spin), arm);
     const dvec3 wanted = rate * rate * (dvec3(pull.to) - dvec3(s.pose.position) - arm) - 2 * rate * velocity;
     return wanted * std::min(1.0, double{pull.most} / std::max(glm::length(wanted), 1.0e-30));
@@ -91,7 +92,7 @@ TEST_P(Pulls, AreThoseOfTheLaw) {
             const BodyState &was = t.bodies[k].state, is = stateOf(got[k]);
             const auto pull = std::ranges::find(t.pulls, k, &BodyPull::body);
             const bool held = pull != t.pulls.end();
-            const dvec3 spring = held ? springOf(*pull, was, seconds) : dvec3(0.0);
+            const dvec3 spring = held ? springOf(*pull, t.bodies[k].shape, was, seconds) : dvec3(0.0);
             if (held && std::abs(glm::length(spring) - double{pull->most}) < 1.0e-6) ++limited;
             const dvec3 fast = dvec3(was.velocity) + seconds * (held ? spring : dvec3(vec3(t.step.gravity)));
             speed = std::max(speed, glm::length(dvec3(is.velocity) - fast));
@@ -318,7 +319,8 @@ TEST_P(Held, ABallPushesABox) {
     for (int frame = 0; frame < 120; ++frame) {
         to.x += 0.01F;
         const BodyPull pull{.body = 0, .at = vec3(0.0F), .to = to};
-        const dvec3 impulse = double{s.bodies[0].shape.mass} * t.length * springOf(pull, t.onGpu(), t.length), before = momentum();
+        const dvec3 impulse = double{s.bodies[0].shape.mass} * t.length * springOf(pull, s.bodies[0].shape, t.onGpu(), t.length),
+                    before = momentum();
         t.frame(pull);
         error = std::max(error, glm::length(momentum() - before - impulse));
         EXPECT_EQ(t.substeps(), 1);

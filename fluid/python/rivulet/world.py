@@ -84,6 +84,8 @@ def _host_of(host: Any, raised: Raised) -> c.BodyHost:
             found = host.contacts(view_of(states, c.STATE, count).copy(), view_of(balls, np.float32, 4 * count).reshape(-1, 4).copy(), seconds)
             if found is None:
                 return
+            if isinstance(found, np.ndarray) and found.dtype.names not in (None, c.CONTACT.names):
+                raise BadInput(f"contacts returned an array with the fields {found.dtype.names}: it must be of type CONTACT")
             theirs = np.asarray(found, c.CONTACT).reshape(-1)
             rows = np.empty(len(theirs), c.CONTACT_ROW)
             rows["size"] = c.CONTACT_ROW.itemsize

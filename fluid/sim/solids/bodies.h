@@ -60,7 +60,9 @@ struct BodyContact {
     // surface is so far from it, whichever way the ball turns.
     vec3 onA{0.0F}, onB{0.0F};
     float radiusA = 0, radiusB = 0;  // m
-    vec3 normal{0.0F};               // unit, from b to a; in the frame of b, of a solid in the world
+    // Unit, from b to a: in the frame of b (of a, where b is a body with a radius), of a solid in the world. In the frame b is taken for a
+    // plane through onB: what passes by must have its contact where it comes nearest, or the plane bars its way.
+    vec3 normal{0.0F};
     // Of a solid that moves in the frame: m/s and rad/s, as it turns about a point (m, in the world, when the frame begins); s, how long.
     vec3 velocityB{0.0F}, spinB{0.0F}, centreB{0.0F};
     float secondsB = 0;
@@ -99,10 +101,10 @@ struct BodyHost {
     void (*added)(void* self, uint32_t id, const Body& body) = nullptr;
     void (*removed)(void* self, uint32_t id, size_t index) = nullptr;
     // On a GPU a step waits for the loads before each call of advance. With these two functions (both, or neither) it does not: the GPU
-    // moves the bodies, and the host learns of it some frames late. contacts is called once a frame; on the cpu never. It adds to `found`
-    // all contacts that may act in the next `seconds`, while the bodies are about in `states` and their centres of mass stay in their balls
-    // (xyz m, w m, the radius). No contacts: they move as FreeBodies does it. False: only the host can move them in this frame.
-    // After true, `passed` is called for each substep, instead of advance.
+    // moves the bodies, and the host learns of it some frames late. contacts is called once or twice in a frame; on the cpu never. It adds
+    // to `found` all contacts that may act in the next `seconds`, while the bodies are about in `states` and their centres of mass stay in
+    // their balls (xyz m, w m, the radius). No contacts: they move as FreeBodies does it. False: only the host can move them in this frame.
+    // After true `passed` is called for each substep, instead of advance, unless more than 384 bodies have contacts or memory is full.
     bool (*contacts)(void* self, std::span<const BodyState> states, std::span<const vec4> balls, double seconds,
                      std::vector<BodyContact>& found) = nullptr;
     void (*passed)(void* self, double seconds) = nullptr;

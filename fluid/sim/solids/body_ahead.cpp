@@ -174,7 +174,7 @@ void BodyPasses::moveOnDevice(const StepParams& step) {
 }
 
 void BodyPasses::beginFrame(const vec3& gravity, double seconds) {
-    if (!mayBeAhead_ || !any() || sampleCount_ == 0) return;
+    if (!mayBeAhead_ || !any() || sampleCount_ == 0 || !(seconds > 0)) return;
     if (!late_) {
         late_ = std::make_shared<Late>(Late{BodyForecast(bodies_), std::vector<uint32_t>(bodies_.size()), {}});
         pushed_.assign(bodies_.size(), {});

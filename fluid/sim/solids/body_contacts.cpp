@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/core/assert.h"
 #include "shaders/fluid/solids/body_state.h"
 
 namespace rivulet {
@@ -126,6 +127,8 @@ ContactRows contactRows(std::span<const BodyContact> contacts, const std::vector
     uint32_t colours = 0;
     for (size_t k = 0; k < order.size();) {
         const BodyContact& c = contacts[order[k]];
+        ASSERT(c.a < moves.size() && (c.b < moves.size() || c.b == BodyContact::kSolid) && c.a != c.b,
+               "a contact of two bodies, or of one");
         size_t end = k + 1;
         while (end < order.size() && contacts[order[end]].a == c.a && contacts[order[end]].b == c.b) ++end;
         std::vector<uint32_t> bodies;

@@ -74,6 +74,8 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         return badInput("the host of the bodies has one of the functions added and removed: give it both, or none");
     if ((host.contacts == nullptr) != (host.passed == nullptr))
         return badInput("the host of the bodies has one of the functions contacts and passed: give it both, or none");
+    if (host.contacts == nullptr && (host.pulls != nullptr || host.predict != nullptr))
+        return badInput("the host of the bodies has a function pulls or predict but no function contacts: give it contacts, too, or none");
     if (host.pulls != nullptr && host.predict == nullptr)
         return badInput("the host of the bodies has a function pulls but no function predict: give it both, or only predict");
     b.host_ = host;

@@ -4,7 +4,7 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-CONSTANT(uint, MOST_TOUCHING, 384u);  // bodies that touch in a frame: so many fit the 32 KiB of work-group memory that every GPU has
+CONSTANT(uint, MOST_TOUCHING, 384u);  // bodies that may touch something in a frame: 24 of the 32 KiB of work-group memory that every GPU has
 CONSTANT(uint, TOUCHING_GROUP, 64u);  // work items of advance_touching
 CONSTANT(uint, NO_CONTACT, 0xffffffffu);
 STRUCT(ContactPair) {
@@ -21,7 +21,7 @@ STRUCT(ContactPair) {
 STRUCT(ContactRow) {
     vec4 onA;       // m, in the frame of a; w: the radius about it
     vec4 onB;       // m, in the frame of b; of a solid in the world, at the frame's begin; w: the radius about it
-    vec4 normal;    // unit, from b to a, in the frame of b; of a solid in the world; w: Coulomb friction
+    vec4 normal;    // unit, from b to a, in the frame of b (of a where b is a ball); of a solid in the world; w: Coulomb friction
     vec4 velocity;  // m/s, of the solid's centre; w: restitution
     vec4 centre;    // m, of a solid, at the frame's begin; w: s, of the frame in which it moves
     vec4 spin;      // rad/s, of a solid about it

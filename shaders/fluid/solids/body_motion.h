@@ -46,7 +46,9 @@ FN PullNow pullOn(BodyMotion m, vec3 x, vec4 q, vec3 v, vec3 spin, vec3 gravity,
     p.angular = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     if (!(m.grip.w > 0.0f)) return p;
     vec3 arm = turnedBy(q, m.grip.xyz);
-    vec3 spring = springOf(x + arm, v + cross(spin, arm), m.hand.xyz, m.grip.w, m.hand.w, seconds);
+    float least = min(min(m.inertia.x, m.inertia.y), m.inertia.z);
+    float light = 1.0f + m.inertia.w * dot(arm, arm) / least;
+    vec3 spring = springOf(x + arm, v + cross(spin, arm), m.hand.xyz, m.grip.w, m.hand.w, seconds, light);
     p.speed = vec4((spring - gravity) * seconds, 0.0f);
     p.angular = vec4(cross(arm, spring) * (m.inertia.w * seconds), calmOf(seconds));
     return p;

@@ -5,13 +5,16 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-// The spring is explicit, and a point off the centre of mass is up to four times as stiff: a step must be short beside the spring's time.
+// The spring is explicit: a step must be short beside its time. A point off the centre of mass is `light` times as light as the body: 1 at
+// the centre, 4 at the corner of a square seen along its axis, more at a tip.
 CONSTANT(float, PULL_SHARE, 0.1f);  // of that time
+CONSTANT(float, PULL_LIGHT, 8.0f);  // a lighter point is pulled by a softer spring, which would throw it to and fro otherwise
 CONSTANT(float, PULL_CALM, 6.0f);   // 1/s: how fast a body stops turning
 // m/s^2, times the mass: a critically damped spring of `rate` (1/s), of at most `most` (m/s^2), that pulls the point at `place` (m), with
-// `velocity` (m/s), to `to` (m) in a step of `seconds`. A pull carries the body's weight, too, at the centre of mass.
-FN vec3 springOf(vec3 place, vec3 velocity, vec3 to, float rate, float most, float seconds) {
+// `velocity` (m/s), to `to` (m) in a step of `seconds`. `light`: see above, or an upper bound. A pull carries the body's weight, too, at the centre of mass.
+FN vec3 springOf(vec3 place, vec3 velocity, vec3 to, float rate, float most, float seconds, float light) {
     float stiff = PULL_SHARE / seconds < rate ? PULL_SHARE / seconds : rate;
+    if (light > PULL_LIGHT) stiff = stiff * (PULL_LIGHT / light);
     vec3 wanted = stiff * stiff * (to - place) - 2.0f * stiff * velocity;
     float size = length(wanted);
     return size > most ? wanted * (most / size) : wanted;

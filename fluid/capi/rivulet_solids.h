@@ -96,8 +96,8 @@ typedef struct rivulet_body_host {
        never. It passes to `add`, with `to`, all contacts that may act in the next `seconds`, while the bodies are about in `states` and the
        centre of mass of each stays in its ball: 4 floats each, xyz and the radius, m, in the world. `add` copies them, and must not be
        called when contacts has returned. It returns 1; or 0: only the host can move them in this frame, for instance because it holds one.
-       After 1, passed is called for each substep instead of advance, unless more than 384 bodies have contacts or memory is full. A contact that cannot be: no body moves in this frame, and the step
-       returns RIVULET_FAILED with a sentence about it. */
+       After 1, passed is called for each substep instead of advance, unless more than 384 bodies have contacts or memory is full. A contact
+       that cannot be: no body moves in this frame, and the step returns RIVULET_FAILED with a sentence about it. */
     int32_t (*contacts)(void* user, const rivulet_body_state* states, const float* balls, size_t count, double seconds,
                         rivulet_add_contact add, void* to);
     void (*passed)(void* user, double seconds);

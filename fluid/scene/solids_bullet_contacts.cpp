@@ -31,6 +31,7 @@ constexpr float kBand = 0.15F;        // of a body's size, beside what it moves 
 constexpr float kSame = 1.0e-3F;      // of a body's size: points that are so near are one
 constexpr float kFlat = 5.0e-3F;      // of a body's size: a corner that stands out by less is none
 constexpr float kSlow = 0.01F;        // of a body's size: what moves less in a frame passes by nothing
+constexpr float kSpare = 2;           // times as fast as expected may it move
 constexpr float kTouching = 2.0e-3F;  // of a body's size: so near two that meet are looked at
 constexpr float kAlike = 0.99999F;    // cosine: normals of one plane
 constexpr float kWrong = 0.02F;       // of a body's size: more than what is reported, they do not overlap along the reported direction
@@ -168,7 +169,8 @@ class Closest : public btCollisionWorld::ContactResultCallback {
         const Parts parts{of.getCollisionShape(), by.getCollisionShape(), part, otherPart};
         const bool again = std::exchange(last_, parts) == parts;  // those are clipped
         if (again && passes_) return 0;
-        passes_ = fast_ && p.m_distance1 > 0 && addApproach(of, by);
+        passes_ = fast_ && p.m_distance1 > 0 &&
+                  mayBeReached(same ? p.m_positionWorldOnA : p.m_positionWorldOnB, direction, p.m_distance1) && addApproach(of, by);
         if (passes_) return 0;
         // Where they overlap, Bullet knows no direction out of a flat triangle: the corners do.
         if (!ball_ && p.m_distance1 < 0 && std::abs(glm::dot(n, normalOf(by, n))) < kOfFace) return 0;
@@ -191,6 +193,12 @@ class Closest : public btCollisionWorld::ContactResultCallback {
     }
 
   private:
+    // Whether the body may come to the plane of a contact in the frame; else it bars no way. `normal`: from b to a.
+    bool mayBeReached(const btVector3& onA, const btVector3& normal, btScalar distance) const {
+        const btVector3 onB = onA - distance * normal;
+        const btScalar closing = normal.dot(motions_->b.velocityAt(onB) - motions_->a.velocityAt(onA));
+        return kSpare * closing * motions_->seconds > distance;
+    }
     // Two parts that move fast are in contact as they are when they are nearest. False: they touch when the frame begins.
     bool addApproach(const btCollisionObjectWrapper& of, const btCollisionObjectWrapper& by) {
         const btCollisionShape &one = *of.getCollisionShape(), &other = *by.getCollisionShape();

@@ -43,7 +43,7 @@ void bodyAdded(void* /*user*/, uint32_t id, const rivulet_body_state* state) {
     added.push_back(id);
 }
 void bodyRemoved(void* /*user*/, uint32_t id) { std::erase(added, id); }
-const rivulet_body_host kEngine{sizeof(rivulet_body_host), nullptr, advance, reset, bodyAdded, bodyRemoved};
+const rivulet_body_host kEngine{sizeof(rivulet_body_host), nullptr, advance, reset, bodyAdded, bodyRemoved, nullptr, nullptr, nullptr};
 
 struct Host {
     rivulet_context* context = nullptr;

@@ -461,7 +461,13 @@ TEST(Contacts, KnowMeshesTheirMotionAndOtherBodies) {
     const Pose turned{vec3(-1, 0, 0), glm::angleAxis(1.5F, vec3(0, 0, 1))};
     contacts.moveTo(std::span(&turned, 1), kFrame);
     EXPECT_GE(count(vec4(-1.6F, 0.6F, 0, 0.05F)), 1U);
-    EXPECT_EQ(std::ranges::count(found, 0U, &BodyContact::a), 1) << "the plate sweeps over it";
+    // One triangle of the plate sweeps over the ball, the other passes by: the plane to that lies along the way, and bars nothing.
+    const auto facing = [&](float low, float high) {
+        return std::ranges::count_if(
+            found, [&](const BodyContact& c) { return c.a == 0 && std::abs(c.normal.x) >= low && std::abs(c.normal.x) <= high; });
+    };
+    EXPECT_EQ(facing(0.99F, 1.01F), 1);
+    EXPECT_EQ(facing(0.01F, 0.99F), 0);
 }
 
 // A world is saved, continued by another, reset, and bodies come and go, while the GPU moves them: nothing of their motion is lost.

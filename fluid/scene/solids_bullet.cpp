@@ -7,19 +7,8 @@
 #include <cstring>
 #include <deque>
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wextra"
-#endif
-#include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
-#include <LinearMath/btConvexHullComputer.h>
-#include <btBulletDynamicsCommon.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
-
 #include "engine/core/assert.h"
+#include "fluid/scene/bullet.h"
 #include "fluid/scene/solids_bullet_contacts.h"
 #include "shaders/fluid/solids/body_pull.h"
 

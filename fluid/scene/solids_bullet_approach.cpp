@@ -2,16 +2,7 @@
 
 #include <algorithm>
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wextra"
-#endif
-#include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
-#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
+#include "fluid/scene/bullet.h"
 
 namespace rivulet {
 

@@ -4,15 +4,7 @@
 
 #include <optional>
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wextra"
-#endif
-#include <btBulletCollisionCommon.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
+#include "fluid/scene/bullet.h"
 
 namespace rivulet {
 

@@ -6,18 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wextra"
-#endif
-#include <BulletCollision/CollisionShapes/btConvexPolyhedron.h>
-#include <BulletCollision/CollisionShapes/btTriangleShape.h>
-#include <BulletCollision/NarrowPhaseCollision/btPolyhedralContactClipping.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
-
+#include "fluid/scene/bullet.h"
 #include "fluid/scene/solids_bullet_approach.h"
 #include "fluid/sim/solids/body_contacts.h"
 

@@ -4,16 +4,7 @@
 #include <span>
 #include <vector>
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wextra"
-#endif
-#include <btBulletCollisionCommon.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
-
+#include "fluid/scene/bullet.h"
 #include "fluid/sim/solids/bodies.h"
 #include "fluid/sim/solids/layers.h"
 

@@ -131,8 +131,8 @@ struct BulletSolids::Impl {
         std::optional<BodyPull> hand;
     };
     std::deque<Past> pasts;  // for predictions, which begin in the past
-    // For contacts: the floating bodies with shapes whose faces and edges Bullet clips against each other. In the world it does not: its
-    // results would change.
+    // Copies of the floating bodies, for contacts(). Bullet clips the faces of their shapes against each other. The shapes of the bodies
+    // in the world have no faces, because a body would move differently with them.
     std::vector<std::unique_ptr<btCollisionObject>> probes;
     std::vector<ContactBody> probed;
     std::optional<BodyPull> hand;

@@ -273,9 +273,9 @@ class CornersOnMesh : public btTriangleCallback {
     std::vector<Touch>* touches_;
 };
 
-// Leaves out what others imply: points that are one, and points of a surface that lies behind the plane of a nearer contact, such as the
-// edges between a floor's triangles, whose slanted normals would stop what slides or rolls over them. A ball that stays before a plane does
-// so as a whole.
+// Leaves out contacts that others make unnecessary: one of two that are in the same place, and those of a surface behind the plane of a
+// nearer contact. Such are the edges between a floor's triangles: their normals are slanted, and would stop a body that slides or rolls.
+// Of a ball one contact with a plane is enough.
 void filter(std::vector<Touch>& touches, float size, bool ball) {
     std::ranges::stable_sort(touches, {}, &Touch::distance);
     std::vector<Touch> kept;

@@ -150,10 +150,10 @@ RIVULET_API rivulet_status rivulet_context_set_surroundings(rivulet_context* con
 
 RIVULET_API rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buffers, rivulet_error* why);
 
-/* For a host's own material: where the wetness of a wall or body is in the two buffers. shaders/material/wet.glsl reads them: wet_cells at
-   binding 1, wetness at binding 2, these as its uniforms wetFromWorld, wetSize and wetFirstCell, and as its uniform porosity how much water
-   the material soaks up, which darkens it: 0 (glaze, metal) to 1 (stone, cloth). It includes surface.glsl and noise.glsl of the same
-   folder. */
+/* For a host's own material: where the wetness of a wall or body is in the two buffers. shaders/material/wet.glsl reads them: wet_cells as
+   storage buffer 0, wetness as storage buffer 1. from_world, cells and first_cell are its uniforms wetFromWorld, wetSize and wetFirstCell.
+   Its uniform porosity is how much water the material soaks up, which darkens it: 0 (glaze, metal) to 1 (stone, cloth); negative: it
+   follows from the roughness and the metallic share that are passed to wetnessAt. docs/embedding.md says what to include before it. */
 typedef enum rivulet_solid { RIVULET_WALL = 0, RIVULET_BODY = 1 } rivulet_solid;
 typedef struct rivulet_wet_solid {
     size_t size;

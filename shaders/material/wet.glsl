@@ -7,7 +7,7 @@ layout(std430, binding = 1) readonly buffer Wetness { float wetness[]; };
 uniform mat4 wetFromWorld;  // world (m) -> cells; POSED: the body's frame -> cells
 uniform ivec3 wetSize;      // cells
 uniform uint wetFirstCell;
-uniform float porosity;     // 0: not darker when wet, 1: as sand; negative: of the roughness
+uniform float porosity;     // 0: not darker when wet, 1: as sand; negative: by roughness and metallic
 
 struct Wet {
     float damp;   // 0..1: share of the surface whose pores hold water

@@ -14,7 +14,7 @@ static const uint32_t kTriangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1
                                         2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
 
 /* Brings the positions. */
-static size_t count_of(rivulet_world* world) {
+static inline size_t count_of(rivulet_world* world) {
     rivulet_particles all = {.size = sizeof all, .capacity = MOST, .positions = positions};
     DONE(rivulet_world_particles(world, &all, &why));
     return all.count;

@@ -48,9 +48,9 @@ for name in $shown; do
     grep -qx "$name" <<<"$declared" || { echo "$name is not in rivulet.h"; exit 1; }
 done
 
-for program in main couple faults jobs walls bodies gl scene many lost overlap attributes; do
+for program in main couple faults jobs walls bodies gl scene many lost overlap attributes wet; do
     packages=rivulet
-    case $program in gl|scene|many|lost|overlap|attributes) packages="rivulet egl gl" ;; esac
+    case $program in gl|scene|many|lost|overlap|attributes|wet) packages="rivulet egl gl" ;; esac
     read -ra flags <<<"$(pkg-config --cflags --libs $packages)"
     "${cc[@]}" -std=c11 $warnings "$here/$program.c" "${flags[@]}" -Wl,-rpath,"$(dirname "$library")" -lm -lpthread -o "$work/$program"
 done
@@ -66,7 +66,7 @@ cxx=(c++ -O1)
 "$work/walls"
 "$work/bodies"
 # Loaded and unloaded by dlopen. A sanitizer's own library cannot be loaded late.
-runs=(gl scene many lost attributes "overlap $work")
+runs=(gl scene many lost attributes "overlap $work" "wet $(pkg-config --variable=includedir rivulet)")
 if [ "${cc[0]}" = cc ]; then
     read -ra flags <<<"$(pkg-config --cflags rivulet) $(pkg-config --cflags --libs egl gl)"
     "${cc[@]}" -std=c11 $warnings "$here/unload.c" "${flags[@]}" -ldl -lpthread -o "$work/unload"

@@ -132,8 +132,9 @@ typedef enum rivulet_part {
     RIVULET_PART_BODY = 5   /* likewise */
 } rivulet_part;
 /* Calls `line` for each line, at the end of this call: `part` a rivulet_part, `from` and `to` m, in the world. `index`: of the emitter,
-   sink or probe, the id of the body, or of the wall among those that move, in their order; 0 of the box. Bodies are where pictures show
-   them: on a GPU that moves them, this waits for the device for half a second after a blow. */
+   sink or probe, the id of the body, or of the wall among those that move, in their order; 0 of the box. Bodies are where
+   rivulet_world_expected_bodies has them: this never waits for the device, and on a GPU that moves them it may differ after a blow from a
+   picture, which shows bodies of plain materials by the device's own poses. */
 RIVULET_API rivulet_status rivulet_world_lines(const rivulet_world* world,
                                                void (*line)(void* user, int32_t part, size_t index, const float* from, const float* to),
                                                void* user, rivulet_error* why);

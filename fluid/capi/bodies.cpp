@@ -212,7 +212,7 @@ void Bodies::fromStates(std::span<BodyState> to) const {
         to[k] = {toOwn(poseOf(states_[k].pose), frames_[k]), vectorOf(states_[k].velocity), vectorOf(states_[k].spin)};
 }
 
-// Error (badInput): a contact that cannot be.
+// Error (badInput): an invalid contact.
 Result<BodyContact> Bodies::contactOf(const rivulet_body_contact& c, size_t bodies) const {
     const auto wrong = [](const std::string& what) { return badInput("body_host.contacts added a contact " + what); };
     const bool solid = c.b == RIVULET_SOLID;
@@ -220,7 +220,7 @@ Result<BodyContact> Bodies::contactOf(const rivulet_body_contact& c, size_t bodi
         return wrong(solid ? "of two solids: a is a body" : "whose a is RIVULET_SOLID: a is a body, and b may be a solid");
     for (const uint32_t body : {c.a, c.b})
         if (body >= bodies && body != RIVULET_SOLID)
-            return wrong(fmt::format("of body {}, and there are {}: give places among the states, counted from 0", body, bodies));
+            return wrong(fmt::format("of body {}, and there are {}: give indices into the states, counted from 0", body, bodies));
     if (c.a == c.b) return wrong(fmt::format("of body {} with itself", c.a));
     BodyContact to;
     to.a = c.a;

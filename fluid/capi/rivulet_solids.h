@@ -59,26 +59,29 @@ typedef struct rivulet_body_state {
 typedef struct rivulet_body_load {
     double force[3], torque[3]; /* N; N m about the centre of mass; in world axes */
 } rivulet_body_load;
-/* A contact that may act in a frame, between body `a` and another or a solid. Its points are those of the two surfaces that are nearest to
-   each other there; they may be apart. */
-enum { RIVULET_SOLID = 0x7fffffff }; /* in place of body b: a wall or solid that the host knows */
+/* A contact that may act in a frame, between body a and body b, or between body a and a solid that the host knows. It names a point of each
+   of the two surfaces: those that are nearest to each other there. The surfaces may be apart or overlap. */
+enum { RIVULET_SOLID = 0x7fffffff }; /* as b: a wall or another solid that the host knows */
 typedef struct rivulet_body_contact {
     size_t size;
-    uint32_t a, b; /* two places among the states, or one and RIVULET_SOLID */
-    /* m: in the frame of a; in that of b, of a solid in the world when the frame begins. With a radius it is the centre of a ball, and the
-       surface is so far from it, whichever way the ball turns. */
+    uint32_t a, b; /* a: index into the states; b: another one, or RIVULET_SOLID */
+    /* m: the point of a, in the frame of a; the point of b, in the frame of b, or of a solid in the world when the frame begins. With a
+       radius (m) above 0 the surface there is a ball of this radius, and the point is its centre. */
     float on_a[3], on_b[3], radius_a, radius_b;
-    /* Unit, from b to a: in the frame of b (of a, where b is a body with a radius), of a solid in the world. In the frame b is taken for a
-       plane through on_b: what passes by must have its contact where it comes nearest, or the plane bars its way. */
+    /* Unit vector, from b to a. Of a solid: in the world when the frame begins. Of a body: in the frame of b; in that of a if radius_b is
+       above 0. During the frame the surface of b is taken for an infinite plane through on_b, or for the ball. Of a body that moves past b
+       give the contact at the place where they come nearest to each other in the frame; otherwise the plane may stop it. */
     float normal[3];
-    /* Of a solid that moves: m/s of the point centre_b (m, in the world when the frame begins), and rad/s, as it turns about that point; it
-       moves so for seconds_b (s) from the frame's begin on, 0: not at all. */
+    /* Of a solid that moves: the velocity (m/s) of the point centre_b (m, in the world when the frame begins), and the spin (rad/s) of the
+       solid about this point. It moves for seconds_b (s) from the start of the frame on; 0: it does not move. */
     float velocity_b[3], spin_b[3], centre_b[3];
     double seconds_b;
-    float friction, restitution; /* Coulomb's coefficient, 0 to 1,000; 0 to 1 */
+    float friction;    /* Coulomb's coefficient, 0 to 1,000 */
+    float restitution; /* 0 to 1 */
 } rivulet_body_contact;
+/* Adds a contact; it is copied. `to`: as passed to contacts. */
 typedef void (*rivulet_add_contact)(void* to, const rivulet_body_contact* contact);
-/* The host's rigid-body engine, which moves the bodies. NULL functions: bodies collide with nothing but fluid. */
+/* The host's rigid-body engine, which moves the bodies. If its functions are NULL, bodies collide with nothing but fluid. */
 typedef struct rivulet_body_host {
     size_t size;
     void* user;
@@ -88,21 +91,24 @@ typedef struct rivulet_body_host {
     void (*reset)(void* user, const rivulet_body_state* states,
                   size_t count); /* sets the bodies to these states: those of t = 0 after a reset */
     /* May be NULL. added: a body enters the world, and is the last of the next states. removed: it leaves the world, and the next states
-       are without it. */
+       do not contain it. */
     void (*added)(void* user, uint32_t id, const rivulet_body_state* state);
     void (*removed)(void* user, uint32_t id);
-    /* Both or neither, beside advance and reset. On a GPU a step waits for the loads before each call of advance; with these functions it
-       does not: the GPU moves the bodies, and the host learns of it some frames late. contacts is called once or twice a frame, on the cpu
-       never. It passes to `add`, with `to`, all contacts that may act in the next `seconds`, while the bodies are about in `states` and the
-       centre of mass of each stays in its ball: 4 floats each, xyz and the radius, m, in the world. `add` copies them, and must not be
-       called when contacts has returned. It returns 1; or 0: only the host can move them in this frame, for instance because it holds one.
-       After 1, passed is called for each substep instead of advance, unless more than 384 bodies have contacts or memory is full. A contact
-       that cannot be: no body moves in this frame, and the step returns RIVULET_FAILED with a sentence about it. */
+    /* contacts and passed: both or neither, in addition to advance and reset. On a GPU a step waits for the loads before each call of
+       advance. With these two functions it does not wait: the GPU moves the bodies, and the host learns their states some frames late.
+       contacts is called once or twice a frame, on backend cpu never. It calls `add(to, contact)` for each contact that may act in the next
+       `seconds`. `states`: where the bodies are expected. `balls`: for each body 4 floats, xyz (m, in the world) and a radius (m); the
+       body's centre of mass is expected to stay in this ball for these `seconds`. `add` must not be called after contacts has returned.
+       contacts returns 1; or 0 if the host itself must move the bodies in this frame, for instance because it holds one: then advance is
+       called. After 1, passed is called for each substep instead of advance, with the length of the substep; but if more than 384 bodies
+       have contacts, or memory is full, advance is called. After an invalid contact no body moves in this frame, and the step returns
+       RIVULET_FAILED; its message says what is invalid. */
     int32_t (*contacts)(void* user, const rivulet_body_state* states, const float* balls, size_t count, double seconds,
                         rivulet_add_contact add, void* to);
     void (*passed)(void* user, double seconds);
-    /* Beside contacts; NULL: bodies are expected to move freely. As advance, from `from` (s, before now where negative) on, without an
-       effect on later calls: where the bodies will be under such loads. */
+    /* For contacts; may be NULL: then expected states are those of bodies that move freely. It is as advance, but changes nothing that
+       later calls depend on: it advances `states` by `seconds` under these loads. They are the states at the time `from` (s after now;
+       negative: before). */
     void (*predict)(void* user, const rivulet_body_load* loads, const float* gravity, double from, double seconds,
                     rivulet_body_state* states, size_t count);
 } rivulet_body_host;

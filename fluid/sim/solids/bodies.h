@@ -51,17 +51,18 @@ struct BodyLoad {
     dvec3 pendingImpulse{0.0}, pendingAngularImpulse{0.0};  // N s, N m s: transferred in later substeps, see BodyLoads
 };
 
-// A contact that may act in a frame, between a body and another or a solid. Its points are those of the two surfaces that are nearest to
-// each other there; they may be apart.
+// A contact that may act in a frame, between body a and body b, or between body a and a solid. It names a point of each of the two
+// surfaces: those that are nearest to each other there. The surfaces may be apart or overlap.
 struct BodyContact {
     static constexpr uint32_t kSolid = UINT32_MAX;  // a wall or solid that the host knows
     uint32_t a = 0, b = kSolid;                     // places among the states
-    // m: in the frame of a; in that of b, of a solid in the world when the frame begins. With a radius it is the centre of a ball, and the
-    // surface is so far from it, whichever way the ball turns.
+    // m: in the frame of a; in that of b, of a solid in the world when the frame begins. With a radius above 0 the surface there is a ball
+    // of this radius, and the point is its centre.
     vec3 onA{0.0F}, onB{0.0F};
     float radiusA = 0, radiusB = 0;  // m
-    // Unit, from b to a: in the frame of b (of a, where b is a body with a radius), of a solid in the world. In the frame b is taken for a
-    // plane through onB: what passes by must have its contact where it comes nearest, or the plane bars its way.
+    // Unit, from b to a: in the frame of b (of a, where b is a body with a radius), of a solid in the world. During the frame the surface
+    // of b is taken for an infinite plane through onB: of a body that moves past b, give the contact at the place where they come nearest
+    // to each other in the frame; otherwise the plane may stop it.
     vec3 normal{0.0F};
     // Of a solid that moves in the frame: m/s and rad/s, as it turns about a point (m, in the world, when the frame begins); s, how long.
     vec3 velocityB{0.0F}, spinB{0.0F}, centreB{0.0F};

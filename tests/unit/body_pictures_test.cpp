@@ -53,8 +53,7 @@ class BodyPictures : public testing::OpenGlTest {};
 
 // The same frame is drawn three times: as the window does; where the duck was expected, since the picture has no poses; and after a wait,
 // with the poses that were read back. The first and the last are equal, with all that follows from the place of a mesh: depth, shadow,
-// light in the water, where it is wet. With wetness each frame reads the states, and the duck is expected where it is: the test says
-// otherwise.
+// light in the water, where it is wet.
 TEST_F(BodyPictures, ABlowIsDrawnWhereTheGpuHasTheBody) {
     const ShaderFiles files = ShaderFiles::developer();
     for (const bool wet : {false, true}) {
@@ -77,7 +76,7 @@ TEST_F(BodyPictures, ABlowIsDrawnWhereTheGpuHasTheBody) {
         };
         size_t seen = 0, most = 0;
         int moved = 0;
-        for (int frame = 0; frame < (wet ? 21 : 25); ++frame) {
+        for (int frame = 0; frame < 25; ++frame) {
             session.step(1.0 / 60, false);
             if (frame < 19) continue;  // it falls
             const uint64_t waits = session.world().stats().bodyWaits;
@@ -85,18 +84,13 @@ TEST_F(BodyPictures, ABlowIsDrawnWhereTheGpuHasTheBody) {
             ASSERT_TRUE(fluid) << fluid.error().message;
             if (!fluid->bodiesMoved) continue;
             ++moved;
-            Scene solids = session.solids();
-            for (size_t n = 0; wet && n < solids.nodes().size(); ++n)
-                if (solids.nodes()[n].body == 0)
-                    solids.moveBody(n, glm::translate(mat4(1.0F), {0.1F, 0.05F, 0}) * solids.nodes()[n].local *
-                                           glm::rotate(mat4(1.0F), 0.7F, {0, 1, 0}));
-            const std::vector<uint8_t> shown = picture(*fluid, solids);
+            const std::vector<uint8_t> shown = picture(*fluid, session.solids());
             EXPECT_EQ(session.world().stats().bodyWaits, waits) << "a picture waits for nothing";
             if (frame % 2 == 0)
                 fluid->bodiesMoved = nullptr;
             else
                 fluid->bodies = 0;
-            const std::vector<uint8_t> expected = picture(*fluid, solids);
+            const std::vector<uint8_t> expected = picture(*fluid, session.solids());
             Scene there = session.solids();
             const std::vector<BodyState>& states = session.world().bodies();
             for (size_t n = 0; n < there.nodes().size(); ++n)
@@ -107,11 +101,10 @@ TEST_F(BodyPictures, ABlowIsDrawnWhereTheGpuHasTheBody) {
             const size_t off = between(shown, expected).pixels;
             most = std::max(most, off);
             seen += off > 20 ? 1 : 0;
-            if (wet) EXPECT_GT(off, 20U) << "else this tested nothing";
         }
         std::printf("%d frames moved by the GPU, %zu of them differ from where the duck was expected, by up to %zu pixels\n", moved, seen,
                     most);
-        EXPECT_GE(moved, wet ? 2 : 6);
+        EXPECT_EQ(moved, 6);
         EXPECT_GT(seen, 0U) << "else this tested nothing";
     }
 }

@@ -40,17 +40,20 @@ STRUCT(PullNow) {
     vec4 speed;    // m/s, that it adds
     vec4 angular;  // N m s; w: what it leaves of the spin
 };
-FN PullNow pullOn(BodyMotion m, vec3 x, vec4 q, vec3 v, vec3 spin, vec3 gravity, float seconds) {
+FN PullNow noPull() {
     PullNow p;
     p.speed = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     p.angular = vec4(0.0f, 0.0f, 0.0f, 1.0f);
-    if (!(m.grip.w > 0.0f)) return p;
-    vec3 arm = turnedBy(q, m.grip.xyz);
-    float least = min(min(m.inertia.x, m.inertia.y), m.inertia.z);
-    float light = 1.0f + m.inertia.w * dot(arm, arm) / least;
-    vec3 spring = springOf(x + arm, v + cross(spin, arm), m.hand.xyz, m.grip.w, m.hand.w, seconds, light);
+    return p;
+}
+// `arm`: m, from the centre of mass to the point; `place`, `velocity`: of the point. `grip`, `hand`: of BodyMotion.
+FN PullNow pullOn(vec4 inertia, vec3 arm, vec3 place, vec3 velocity, vec4 grip, vec4 hand, vec3 gravity, float seconds) {
+    PullNow p;
+    float least = min(min(inertia.x, inertia.y), inertia.z);
+    float light = 1.0f + inertia.w * dot(arm, arm) / least;
+    vec3 spring = springOf(place, velocity, hand.xyz, grip.w, hand.w, seconds, light);
     p.speed = vec4((spring - gravity) * seconds, 0.0f);
-    p.angular = vec4(cross(arm, spring) * (m.inertia.w * seconds), calmOf(seconds));
+    p.angular = vec4(cross(arm, spring) * (inertia.w * seconds), calmOf(seconds));
     return p;
 }
 
@@ -61,6 +64,26 @@ FN bool isSoundState(vec3 x, vec4 q, vec3 v, vec3 spin) {
     return sound && SQUARE_BELOW(size, 1.5f) && size > 0.5f;
 }
 
+// The sum of the fluid's loads on a body; force.w: wet share of its surface.
+FN LoadRow sumOf(GLOBAL(LoadRow, rows) uint b, float samples) {
+    LoadRow sum;
+    sum.force = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    sum.torque = sum.force;
+    if (!(samples > 0.0f)) return sum;
+    for (uint t = b * LOAD_THREADS; t < (b + 1u) * LOAD_THREADS; ++t) {
+        sum.force = sum.force + rows[t].force;
+        sum.torque = sum.torque + vec4(rows[t].torque.xyz, 0.0f);
+    }
+    float size = dot(sum.force.xyz, sum.force.xyz) + dot(sum.torque.xyz, sum.torque.xyz) + sum.force.w * sum.force.w;
+    // What is not finite moves nothing.
+    if (!SQUARE_BELOW(size, MOST_LOAD)) {
+        sum.force = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+        sum.torque = sum.force;
+    }
+    sum.force = vec4(sum.force.xyz, sum.force.w / samples);
+    return sum;
+}
+
 // The load on a body in a substep, as BodyLoads::transfer has it: impulses that act now, and those that are pending then.
 STRUCT(LoadNow) {
     vec4 impulse;         // N s
@@ -68,28 +91,11 @@ STRUCT(LoadNow) {
     vec4 pending;         // N s
     vec4 pendingAngular;  // N m s
 };
-// `pending`, `pendingAngular`: of the substep before.
-FN LoadNow loadOf(GLOBAL(LoadRow, rows) uint b, float samples, float added, float seconds, vec3 pending, vec3 pendingAngular) {
-    vec3 force = vec3(0.0f, 0.0f, 0.0f);
-    vec3 torque = vec3(0.0f, 0.0f, 0.0f);
-    float wet = 0.0f;
-    if (samples > 0.0f) {
-        for (uint t = b * LOAD_THREADS; t < (b + 1u) * LOAD_THREADS; ++t) {
-            force = force + rows[t].force.xyz;
-            torque = torque + rows[t].torque.xyz;
-            wet += rows[t].force.w;
-        }
-        // What is not finite moves nothing.
-        if (!SQUARE_BELOW(dot(force, force) + dot(torque, torque) + wet * wet, MOST_LOAD)) {
-            force = vec3(0.0f, 0.0f, 0.0f);
-            torque = force;
-            wet = 0.0f;
-        }
-        wet = wet / samples;
-    }
-    float share = 1.0f / (1.0f + added * wet);
-    vec3 impulse = force * seconds + pending;
-    vec3 angular = torque * seconds + pendingAngular;
+// `sum`: of sumOf. `pending`, `pendingAngular`: of the substep before.
+FN LoadNow loadOf(LoadRow sum, float added, float seconds, vec3 pending, vec3 pendingAngular) {
+    float share = 1.0f / (1.0f + added * sum.force.w);
+    vec3 impulse = sum.force.xyz * seconds + pending;
+    vec3 angular = sum.torque.xyz * seconds + pendingAngular;
     LoadNow l;
     l.impulse = vec4(impulse * share, 0.0f);
     l.angular = vec4(angular * share, 0.0f);
@@ -98,14 +104,14 @@ FN LoadNow loadOf(GLOBAL(LoadRow, rows) uint b, float samples, float added, floa
     return l;
 }
 
-// The body with this load noted. `first`: in a frame's first substep.
-FN DeviceBody loaded(DeviceBody body, LoadNow l, float seconds, bool first) {
-    body.force = l.impulse * (1.0f / seconds);
-    body.torque = l.angular * (1.0f / seconds);
-    body.pendingImpulse = l.pending;
-    body.pendingAngularImpulse = l.pendingAngular;
-    body.pushed = first ? l.impulse : body.pushed + l.impulse;
-    body.pushedAngular = first ? l.angular : body.pushedAngular + l.angular;
-    body.faults = first ? 0u : body.faults;
-    return body;
-}
+// Notes this load of a body field by field: a copy of the whole body takes 44 registers, which spill on Intel's GPUs. `first`: in a frame's
+// first substep.
+#define NOTE_LOAD(body, l, seconds, first)                                         \
+    {                                                                              \
+        body.force = l.impulse * (1.0f / (seconds));                               \
+        body.torque = l.angular * (1.0f / (seconds));                              \
+        body.pendingImpulse = l.pending;                                           \
+        body.pendingAngularImpulse = l.pendingAngular;                             \
+        body.pushed = (first) ? l.impulse : body.pushed + l.impulse;               \
+        body.pushedAngular = (first) ? l.angular : body.pushedAngular + l.angular; \
+    }

@@ -11,12 +11,10 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "engine/app/gl_count.h"
 #include "engine/compute/device_cl.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/render/fluid_upload.h"
@@ -25,38 +23,13 @@
 #include "fluid/session/scene_renderer.h"
 #include "fluid/session/session.h"
 #include "tests/unit/cl_waits.h"
+#include "tests/unit/gl_waits.h"
 #include "tests/unit/opengl_test.h"
 
 namespace rivulet::waits_test {
 namespace {
 
-size_t waited = 0;  // calls of glClientWaitSync that may wait
-PFNGLCLIENTWAITSYNCPROC counted = nullptr;
-
-GLenum GLAD_API_PTR waitSync(GLsync sync, GLbitfield flags, GLuint64 nanoseconds) {
-    if (nanoseconds > 0) ++waited;
-    return counted(sync, flags, nanoseconds);
-}
-
-gpu::FunctionPointer find(const char* name) {
-    const gpu::FunctionPointer found = countingFind(name);
-    if (std::string_view(name) != "glClientWaitSync") return found;
-    counted = reinterpret_cast<PFNGLCLIENTWAITSYNCPROC>(found);
-    return reinterpret_cast<gpu::FunctionPointer>(waitSync);
-}
-
 using Calls = std::map<std::string, size_t>;
-
-// Calls that return after the GPU has finished what they ask for.
-Calls waiting(const GlCalls& calls) {
-    Calls some = testing::clWaits();
-    for (const char* name :
-         {"glFinish", "glGetNamedBufferSubData", "glGetBufferSubData", "glReadPixels", "glReadnPixels", "glGetTexImage",
-          "glGetTextureImage", "glGetTextureSubImage", "glGetnTexImage", "glMapBuffer", "glMapBufferRange", "glMapNamedBuffer"})
-        if (const auto found = calls.byName.find(name); found != calls.byName.end()) some.insert(*found);
-    if (waited > 0) some["glClientWaitSync"] = waited;
-    return some;
-}
 
 // A ball in the middle of a pool: it bobs, or is dropped from there. `carries`: a volume that stays dry, into which it rains.
 std::string ballInPool(float y, bool carries) {
@@ -144,9 +117,8 @@ Calls waitsOf(const Case& c, const ShaderFiles& files, Device& device, uint64_t&
                 (*session)->flows().ledgerLater([before](const SkinFlows::Ledger& l) { *before = l.onSurface; });
             bodyWaits = (*session)->world().stats().bodyWaits;
             device.takeTimes();
-            startGlCount();
+            testing::startGlWaits();
             testing::startClWaits();
-            waited = 0;
         }
         if (c.held)
             (*session)->hold(BodyPull{
@@ -168,7 +140,8 @@ Calls waitsOf(const Case& c, const ShaderFiles& files, Device& device, uint64_t&
         EXPECT_TRUE((*renderer)->draw(view, shown.fluid, *shown.solids, (*session)->scene()));
         behind.frameEnds();
     }
-    Calls waits = waiting(glCount());
+    Calls waits = testing::clWaits();
+    waits.merge(testing::glWaits());
     bodyWaits = (*session)->world().stats().bodyWaits - bodyWaits;
     device.finish();
     device.poll();
@@ -188,13 +161,46 @@ class Waits : public ::testing::Test {
         context_.emplace(ContextEgl::create({}));
         if (!*context_ && testing::mayLackOpenGl()) GTEST_SKIP() << context_->error().message;
         ASSERT_TRUE(*context_) << context_->error().message;
-        ASSERT_TRUE(gpu::load(find));
+        ASSERT_TRUE(gpu::load(testing::waitsFind));
     }
     const ShaderFiles files_ = ShaderFiles::developer();
 
   private:
     std::optional<Result<ContextEgl>> context_;
 };
+
+// What the shim must see, and what it must not take for a wait.
+TEST_F(Waits, CallsThatWaitAreCounted) {
+    const GLbitfield reads = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT;
+    GLuint buffer = 0, queries[2] = {};
+    GLuint64 ns = 0;
+    glCreateBuffers(1, &buffer);
+    glGenQueries(2, queries);
+    testing::startGlWaits();
+    glNamedBufferStorage(buffer, 64, nullptr, reads);
+    glMapNamedBufferRange(buffer, 0, 64, reads);
+    EXPECT_TRUE(testing::glWaits().empty()) << "no command uses the buffer yet";
+    glUnmapNamedBuffer(buffer);
+    glMapNamedBufferRange(buffer, 0, 64, reads);
+    glUnmapNamedBuffer(buffer);
+    EXPECT_EQ(testing::glWaits(), (Calls{{"glMapNamedBufferRange", 1}}));
+
+    testing::startGlWaits();
+    for (const GLuint query : queries) glQueryCounter(query, GL_TIMESTAMP);
+    GLuint there = GL_FALSE;
+    while (there == GL_FALSE) glGetQueryObjectuiv(queries[1], GL_QUERY_RESULT_AVAILABLE, &there);
+    for (const GLuint query : queries) glGetQueryObjectui64v(query, GL_QUERY_RESULT, &ns);
+    EXPECT_TRUE(testing::glWaits().empty()) << "of two timestamps the second is available";
+    glQueryCounter(queries[0], GL_TIMESTAMP);
+    glGetQueryObjectui64v(queries[0], GL_QUERY_RESULT, &ns);
+    EXPECT_EQ(testing::glWaits(), (Calls{{"glGetQueryObjectui64v", 1}}));
+
+    testing::startGlWaits();
+    glFinish();
+    EXPECT_EQ(testing::glWaits(), (Calls{{"glFinish", 1}}));
+    glDeleteQueries(2, queries);
+    glDeleteBuffers(1, &buffer);
+}
 
 // A GPU waits for no frame of these: particles of all methods with foam, moving and deforming solids, drops and wetness on skins, rain on
 // them, a ball that bobs, also with a wet surface, falls into a pool, is drawn through it by a hand or carries a dry volume into which it

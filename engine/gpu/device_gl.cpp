@@ -375,7 +375,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
 }
 
 void GlDevice::finish() {
-    // zink of Mesa 22.3: where nothing was issued since the last flush, which passed() does, glFinish() returns before the GPU has finished.
+    // zink of Mesa 22.3: where nothing was issued since the last flush, which passed() does, glFinish() returns too early.
     if (!pendingReads_.empty()) pendingReads_.back().copied.wait();
     glFinish();
     (void)isLost();

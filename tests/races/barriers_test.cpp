@@ -128,7 +128,15 @@ TEST_F(Barriers, OfTheFrameGraphAreEachNeededAndEnough) {
     }
 }
 
-// Of the first barriers of a step: what a dispatch wrote is nearly always used by the next one.
+// "reorder" of a sentence on memory "which kernel reorder wrote".
+std::string writer(const std::string& sentence) {
+    const std::string before = "which kernel ";
+    const size_t from = sentence.find(before) + before.size();
+    return sentence.substr(from, sentence.find(" wrote", from) - from);
+}
+
+// Of the first barriers of a step, all but two follow a kernel whose results the next kernel uses. Not reported are the barrier of poll(),
+// before which nothing was written since the last one, and that after near_walls: dfsph_warm, which follows, reads nothing of it.
 TEST(BarriersOfDeviceGl, OneThatIsLeftOutIsReported) {
     Result<TestGpu> gpu = makeTestGpu("gl");
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -141,15 +149,19 @@ TEST(BarriersOfDeviceGl, OneThatIsLeftOutIsReported) {
     ASSERT_TRUE(world) << world.error().message;
     (*world)->step({}, 1.0 / 600);
     EXPECT_EQ(barriers::takeMissing(), std::vector<std::string>());
-    size_t reported = 0;
+    std::vector<std::string> reported;
     for (size_t n = 1; n <= 12; ++n) {
         barriers::leaveOutBarrier(n);
         (*world)->step({}, 1.0 / 600);
         const std::vector<std::string> missing = barriers::takeMissing();
-        reported += missing.empty() ? 0 : 1;
-        if (!missing.empty()) EXPECT_EQ(missing[0].rfind("kernel ", 0), 0U) << missing[0];
+        for (const std::string& sentence : missing) {
+            EXPECT_EQ(sentence.rfind("kernel ", 0), 0U) << sentence;
+            EXPECT_NE(sentence.find(" without GL_SHADER_STORAGE_BARRIER_BIT"), std::string::npos) << sentence;
+        }
+        reported.push_back(missing.empty() ? "" : writer(missing[0]));
     }
-    EXPECT_GE(reported, 9U);
+    EXPECT_EQ(reported, (std::vector<std::string>{"", "cell_count", "scan_reduce", "scan_blocks", "scan_apply", "cell_scatter", "cell_sort",
+                                                  "reorder", "", "dfsph_warm", "dfsph_density", "dfsph_begin"}));
 }
 
 }  // namespace

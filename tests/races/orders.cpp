@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
+#include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <regex>
+#include <string_view>
 #include <utility>
 
 #include "engine/core/assert.h"
+#include "engine/core/file.h"
 #include "fluid/sim/world/cpu_kernels.h"
+#include "tests/races/small_worlds.h"
 
 namespace rivulet::races {
 namespace {
@@ -22,6 +28,9 @@ constexpr Numbers kGlsl = {"#define THREAD_ID (gl_GlobalInvocationID.x + groupBa
 constexpr Numbers kOpencl = {"#define THREAD_ID ((uint)get_global_id(0))", "#define LOCAL_ID ((uint)get_local_id(0))",
                              "#define GROUP_ID ((uint)get_group_id(0))"};
 
+constexpr std::string_view kAfterLanguages = "#if !defined(__cplusplus)  // on a GPU";
+constexpr const char* kSeedVariable = "RIVULET_ORDER_SEED";
+
 Status replace(std::string& text, std::string_view from, const std::string& to) {
     const size_t at = text.find(from);
     if (at == std::string::npos) return failed("shaders/common/lang.h has no line " + std::string(from) + "; adapt tests/races/orders.cpp");
@@ -30,55 +39,89 @@ Status replace(std::string& text, std::string_view from, const std::string& to) 
 }
 
 // Each is a permutation: of any number of groups, and of a work group's power of two.
-std::string groupIn(Order order, const std::string& group, const std::string& groups) {
-    if (order == Order::backwards) return "(" + groups + " - 1u - " + group + ")";
-    const std::string half = "((" + groups + " + 1u) / 2u)";  // the even ones first
-    return "(" + group + " < " + half + " ? 2u * " + group + " : 2u * (" + group + " - " + half + ") + 1u)";
+std::string groupIn(const Order& order, const std::string& group, const std::string& groups) {
+    if (order.kind == Order::Kind::backwards) return fmt::format("({1} - 1u - {0})", group, groups);
+    if (order.kind == Order::Kind::shuffled) return fmt::format("shuffled({}, {}, {}u)", group, groups, order.seed);
+    return fmt::format("({0} < ({1} + 1u) / 2u ? 2u * {0} : 2u * ({0} - ({1} + 1u) / 2u) + 1u)", group, groups);  // the even ones first
 }
-std::string localIn(Order order, const std::string& local) {
-    return order == Order::backwards ? "(LOCAL_SIZE - 1u - " + local + ")" : "((" + local + " * 29u + 11u) % LOCAL_SIZE)";
+std::string localIn(const Order& order, const std::string& local, const std::string& group) {
+    if (order.kind == Order::Kind::backwards) return "(LOCAL_SIZE - 1u - " + local + ")";
+    if (order.kind == Order::Kind::shuffled) return fmt::format("shuffled({}, LOCAL_SIZE, {}u + {})", local, order.seed, group);
+    return "((" + local + " * 29u + 11u) % LOCAL_SIZE)";
 }
 
-uint32_t itemIn(Order order, uint32_t k, uint32_t count) {
-    if (order == Order::backwards) return count - 1 - k;
+using uint = uint32_t;
+#define FN inline
+#include "tests/races/shuffled.inc"
+#undef FN
+
+// A CpuKernelRow is a function without state: so each row has a function of its own, which runs its kernel, and the order is kept beside
+// them.
+constexpr size_t kMostRows = 1024;
+std::array<CpuKernelFn, kMostRows> ownRows;
+Order ownOrder;
+template <size_t row>
+void runInOrder(uint32_t begin, uint32_t end, const void* params, void* const* buffers) {
+    for (uint32_t k = 0; k < end - begin; ++k) {
+        const uint32_t item = begin + ownOrder.item(k, end - begin);
+        ownRows[row](item, item + 1, params, buffers);
+    }
+}
+template <size_t... rows>
+constexpr std::array<CpuKernelFn, sizeof...(rows)> functionsOf(std::index_sequence<rows...>) {
+    return {runInOrder<rows>...};
+}
+constexpr auto kInOrder = functionsOf(std::make_index_sequence<kMostRows>());
+
+}  // namespace
+
+std::string Order::name() const {
+    if (kind == Kind::shuffled) return fmt::format("shuffled by {}={}", kSeedVariable, seed);
+    return kind == Kind::backwards ? "backwards" : "interleaved";
+}
+
+uint32_t Order::item(uint32_t k, uint32_t count) const {
+    if (kind == Kind::backwards) return count - 1 - k;
+    if (kind == Kind::shuffled) return shuffled(k, count, seed);
     const uint32_t half = (count + 1) / 2;
     return k < half ? 2 * k : 2 * (k - half) + 1;
 }
 
-// A CpuKernelRow is a function without state: so each row has a function of its own, which runs its kernel.
-constexpr size_t kMostRows = 1024;
-std::array<CpuKernelFn, kMostRows> ownRows;
-template <Order order, size_t row>
-void runIn(uint32_t begin, uint32_t end, const void* params, void* const* buffers) {
-    for (uint32_t k = 0; k < end - begin; ++k) {
-        const uint32_t item = begin + itemIn(order, k, end - begin);
-        ownRows[row](item, item + 1, params, buffers);
-    }
+Result<uint32_t> orderSeed() {
+    static const uint32_t other = full() ? std::random_device()() : 1;
+    const char* text = std::getenv(kSeedVariable);
+    if (text == nullptr) return other;
+    uint32_t seed = 0;
+    const std::string_view digits = text;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seed);
+    if (error != std::errc() || end != digits.data() + digits.size())
+        return failed(fmt::format("{}={} is no whole number from 0 to {}", kSeedVariable, text, UINT32_MAX));
+    return seed;
 }
-template <Order order, size_t... rows>
-constexpr std::array<CpuKernelFn, sizeof...(rows)> functionsOf(std::index_sequence<rows...>) {
-    return {runIn<order, rows>...};
-}
-constexpr auto kBackwards = functionsOf<Order::backwards>(std::make_index_sequence<kMostRows>());
-constexpr auto kInterleaved = functionsOf<Order::interleaved>(std::make_index_sequence<kMostRows>());
 
-}  // namespace
-
-Result<ShaderFiles> shadersIn(Order order) {
+Result<ShaderFiles> shadersIn(const Order& order) {
     ShaderFiles files = ShaderFiles::developer();
-    Result<std::string> lang = files.load("shaders/common/lang.h");
+    Result<std::string> lang = files.load("shaders/common/lang.h"),
+                        formula = readFile(std::string(RIVULET_SOURCE_DIR) + "/tests/races/shuffled.inc");
     if (!lang) return lang.error();
+    if (!formula) return formula.error();
     std::string text = *lang;
     const std::string thread = "#define THREAD_ID (GROUP_ID * LOCAL_SIZE + LOCAL_ID)";
-    const std::string glslGroup = groupIn(order, "gl_WorkGroupID.x", "gl_NumWorkGroups.x"),
-                      openclGroup = groupIn(order, "(uint)get_group_id(0)", "(uint)get_num_groups(0)");
+    struct Built {  // the numbers that the languages have built in
+        const char *group, *groups, *local;
+    };
+    const Built glsl = {"gl_WorkGroupID.x", "gl_NumWorkGroups.x", "gl_LocalInvocationID.x"},
+                opencl = {"(uint)get_group_id(0)", "(uint)get_num_groups(0)", "(uint)get_local_id(0)"};
     for (const Status& done :
          {replace(text, kGlsl.thread, thread),
-          replace(text, kGlsl.local, "#define LOCAL_ID " + localIn(order, "gl_LocalInvocationID.x") + "\n"),
-          replace(text, kGlsl.group, "#define GROUP_ID (" + glslGroup + " + groupBase_)"), replace(text, kOpencl.thread, thread),
-          replace(text, kOpencl.local, "#define LOCAL_ID " + localIn(order, "(uint)get_local_id(0)")),
-          replace(text, kOpencl.group, "#define GROUP_ID " + openclGroup)})
+          replace(text, kGlsl.local, "#define LOCAL_ID " + localIn(order, glsl.local, glsl.group) + "\n"),
+          replace(text, kGlsl.group, "#define GROUP_ID (" + groupIn(order, glsl.group, glsl.groups) + " + groupBase_)"),
+          replace(text, kOpencl.thread, thread),
+          replace(text, kOpencl.local, "#define LOCAL_ID " + localIn(order, opencl.local, opencl.group)),
+          replace(text, kOpencl.group, "#define GROUP_ID " + groupIn(order, opencl.group, opencl.groups)),
+          replace(text, kAfterLanguages, "#include \"shaders/test/shuffled.h\"\n" + std::string(kAfterLanguages))})
         if (!done) return done.error();
+    files.add("shaders/test/shuffled.h", std::move(*formula));
     files.add("shaders/common/lang.h", std::move(text));
     return files;
 }
@@ -139,14 +182,15 @@ Result<ShaderFiles> shadersWith(NanHabit habit) {
     return files;
 }
 
-std::unique_ptr<CpuDevice> cpuIn(Order order) {
+std::unique_ptr<CpuDevice> cpuIn(const Order& order) {
     std::vector<CpuKernelRow> rows;
     for (const CpuKernelRow& row : cpuKernels())
         if (row.isa == Isa::generic) rows.push_back(row);  // results are the same with each
     ASSERT(rows.size() <= kMostRows, "raise kMostRows");
+    ownOrder = order;
     for (size_t k = 0; k < rows.size(); ++k) {
         ownRows[k] = rows[k].run;
-        rows[k].run = order == Order::backwards ? kBackwards[k] : kInterleaved[k];
+        rows[k].run = kInOrder[k];
         rows[k].grain = UINT32_MAX;  // all work items in one call
     }
     return makeCpuDevice(rows, {.threads = 1, .isa = Isa::generic});

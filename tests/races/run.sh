@@ -42,8 +42,10 @@ on_zink() { GALLIUM_DRIVER=zink LIBGL_ALWAYS_SOFTWARE=1 VK_ICD_FILENAMES="$icd" 
 gl_tests='*gl*:*Gl*:*Barriers*-*GlSharing*'
 
 suite_oclgrind() {
-    local status=0 world
-    for world in $("$tests" --gtest_filter='Worlds/Orders.*' --gtest_list_tests | sed -n 's/^ *GiveTheSameResults\/cl_\([A-Za-z0-9]*\).*/\1/p'); do
+    local status=0 world worlds
+    worlds="$("$tests" --gtest_filter='Worlds/Orders.*' --gtest_list_tests | sed -n 's/^ *GiveTheSameResults\/cl_\([A-Za-z0-9]*\).*/\1/p')"
+    [ -n "$worlds" ] || { echo "$tests lists no worlds on cl"; status=1; }
+    for world in $worlds; do
         if ! under_oclgrind env RIVULET_WORLDS="$world" "$tests" --gtest_filter='*SmallWorlds*cl' >"$work/$world.log" 2>&1; then
             status=1
             tail -n 20 "$work/$world.log"
@@ -95,7 +97,7 @@ suite_swiftshader() {
     icd="$work/swiftshader.json" suite_zink
 }
 suite_orders() {
-    "$tests" --gtest_filter='*Orders*:*SmallWorlds*gl' >"$work/orders.log" 2>&1
+    "$tests" --gtest_filter='*Orders*:*WorkGroups*:*NanHabits*:*SmallWorlds*gl' >"$work/orders.log" 2>&1
     local status=$?
     grep -E 'FAILED|kernels in|tests ran' "$work/orders.log"
     said orders $status

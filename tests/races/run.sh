@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Races, barriers and other drivers, which take minutes: see README.md.
-#   run.sh [BUILD] [SUITE...]      suites: oclgrind zink validation swiftshader orders planted; without any: all but swiftshader
+#   run.sh [BUILD] [SUITE...]      suites: oclgrind zink validation swiftshader orders subgroups planted; without any: all but swiftshader
 # BUILD: a build with tests, build/release by default. It exits with 1 if a suite fails, and says how many.
 set -u
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -11,7 +11,7 @@ if [ $# -gt 0 ] && [ -d "$1" ]; then
     shift
 fi
 suites=("$@")
-[ ${#suites[@]} -gt 0 ] || suites=(oclgrind zink validation orders planted)
+[ ${#suites[@]} -gt 0 ] || suites=(oclgrind zink validation orders subgroups planted)
 tests="$folder/bin/test_races"
 parity="$folder/bin/test_parity"
 [ -x "$tests" ] && [ -x "$parity" ] || fail "$folder has no tests: cmake --preset release -DRIVULET_TESTS=ON, then build test_races and test_parity"
@@ -102,13 +102,26 @@ suite_orders() {
     grep -E 'FAILED|kernels in|tests ran' "$work/orders.log"
     said orders $status
 }
+suite_subgroups() {
+    # llvmpipe runs 4, 8 or 16 work items at once. Its cache of shaders does not tell them apart.
+    local status=0 lanes
+    local against='*SortTest*gl*:*VoxelDevices*gl*:*VoxelDepthDevices*gl*:*MethodsParity*gl*:*SolverParity*gl*:*RelationsParity*gl*'
+    for lanes in 4 8 16; do
+        local on=(env MESA_SHADER_CACHE_DISABLE=true "LP_NATIVE_VECTOR_WIDTH=$((32 * lanes))")
+        "${on[@]}" "$tests" --gtest_filter='*WorkGroups*gl*' >"$work/subgroups.log" 2>&1 || status=1
+        "${on[@]}" "$parity" --gtest_filter="$against" >>"$work/subgroups.log" 2>&1 || status=1
+        echo "$lanes lanes"
+        grep -E 'FAILED|tests ran|test ran' "$work/subgroups.log"
+    done
+    said subgroups $status
+}
 suite_planted() {
     bash "$here/planted/run.sh" "$folder" "$work"
     said planted $?
 }
 
 for suite in "${suites[@]}"; do
-    declare -F "suite_$suite" >/dev/null || fail "$suite is no suite: oclgrind zink validation swiftshader orders planted"
+    declare -F "suite_$suite" >/dev/null || fail "$suite is no suite: oclgrind zink validation swiftshader orders subgroups planted"
     "suite_$suite"
 done
 [ $faults -eq 0 ]

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include <sstream>
 #include "engine/core/assert.h"
 #include "fluid/session/reference_data.h"
 
@@ -166,6 +167,33 @@ std::string lowerOf(std::string_view text) {
 }
 
 }  // namespace
+// Words after a model's number that make another model of it, with other units or clocks.
+const std::set<std::string, std::less<>> kOtherModels = {"ti",     "super", "xt",    "xtx",  "xtxh",   "gre", "laptop",
+                                                         "mobile", "max-q", "max-p", "d",    "m",      "s",   "le",
+                                                         "v2",     "oem",   "nvl",   "pcie", "2048sp", "3gb", "notebook"};
+
+// Whether a renderer's or device's name, as "AMD Radeon RX 6800 (radeonsi, navi21, ...)", has the words of `model` and no others that make
+// another model of it, as "RX 6800 XT" and "RX 6800M" are. Trade marks, as of "Arc(tm)", do not count.
+bool namesModel(std::string_view renderer, std::string_view model) {
+    std::string name = lowerOf(renderer);
+    for (const std::string_view mark : {"(r)", "(tm)"})
+        for (size_t at = name.find(mark); at != std::string::npos; at = name.find(mark)) name.erase(at, mark.size());
+    const std::string wanted = lowerOf(model);
+    const size_t at = name.find(wanted);
+    if (at == std::string::npos) return false;
+    const auto inWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+    if (at > 0 && inWord(name[at - 1])) return false;
+    std::string rest = name.substr(at + wanted.size());
+    if (!rest.empty() && inWord(rest.front())) return false;  // RX 6800M
+    for (const char* bus : {"/pcie", "/agp", "("}) rest.resize(std::min(rest.find(bus), rest.size()));
+    std::replace_if(
+        rest.begin(), rest.end(), [&](char c) { return !inWord(c) && c != '-'; }, ' ');
+    std::istringstream words(rest);
+    for (std::string word; words >> word;)
+        if (kOtherModels.contains(word)) return false;
+    return true;
+}
+
 
 double FrameCost::ms() const {
     double sum = 0;
@@ -217,10 +245,9 @@ GpuSpec measuredGpu(const std::string& name, const DeviceRates& rates, int step)
 
 NearestGpu nearestGpu(std::string_view name, double bandwidth) {
     const std::vector<GpuSpec> all = publishedGpus();
-    const std::string lower = lowerOf(name);
     const GpuSpec* found = nullptr;
     for (const GpuSpec& g : all)  // the longest name that is part of it
-        if (lower.find(lowerOf(g.name)) != std::string::npos && (found == nullptr || g.name.size() > found->name.size())) found = &g;
+        if (namesModel(name, g.name) && (found == nullptr || g.name.size() > found->name.size())) found = &g;
     if (found != nullptr) return {*found, true};
     for (const GpuSpec& g : all)
         if (found == nullptr || std::abs(std::log(g.bandwidth / bandwidth)) < std::abs(std::log(found->bandwidth / bandwidth))) found = &g;

@@ -42,6 +42,7 @@ std::vector<GpuSpec> publishedGpus();
 // A device by its measured rates. `step`: as above; a GPU: its published figures with the measured bandwidth and rate are better.
 GpuSpec measuredGpu(const std::string& name, const DeviceRates& rates, int step);
 // The published GPU that a renderer's or device's name contains, or the one with the nearest bandwidth (`bandwidth`, bytes/s; 0: unknown).
+// A model with a suffix is another GPU: an RTX 3060 Ti is no RTX 3060.
 struct NearestGpu {
     GpuSpec gpu;
     bool byName = false;

@@ -99,8 +99,26 @@ TEST(GpuCost, APictureInSoftwareTakesItsFragmentsAndItsReads) {
 }
 
 TEST(GpuCost, AGpuIsFoundByItsNameOrItsBandwidth) {
-    EXPECT_EQ(nearestGpu("NVIDIA GeForce RTX 3060/PCIe/SSE2", 0).gpu.name, "RTX 3060");
-    EXPECT_TRUE(nearestGpu("AMD Radeon RX 6800 (navi21, LLVM 15, DRM 3.49)", 0).byName);
+    const auto named = [](const char* renderer) {
+        const NearestGpu nearest = nearestGpu(renderer, 448.0e9);  // of an RTX 3060 Ti
+        return nearest.byName ? nearest.gpu.name : "none";
+    };
+    EXPECT_EQ(named("NVIDIA GeForce RTX 3060/PCIe/SSE2"), "RTX 3060");
+    EXPECT_EQ(named("NVIDIA GeForce GTX 1060 6GB/PCIe/SSE2"), "GTX 1060");
+    EXPECT_EQ(named("AMD Radeon RX 6800 (radeonsi, navi21, LLVM 15.0.6, DRM 3.49, 6.1.0)"), "RX 6800");
+    EXPECT_EQ(named("AMD Radeon RX 580 Series (polaris10, LLVM 15.0.6, DRM 3.49, 6.1.0)"), "RX 580");
+    EXPECT_EQ(named("AMD Radeon RX 7900 XTX (radeonsi, navi31, LLVM 15.0.7, DRM 3.54, 6.5.0)"), "RX 7900 XTX");
+    EXPECT_EQ(named("Mesa Intel(R) Arc(tm) A770 Graphics (DG2)"), "Arc A770");
+    EXPECT_EQ(named("NVIDIA H100 80GB HBM3"), "H100 80GB");
+    // A suffix makes another GPU of it.
+    for (const char* other :
+         {"NVIDIA GeForce RTX 3060 Ti/PCIe/SSE2", "NVIDIA GeForce RTX 4070 Ti SUPER/PCIe/SSE2", "NVIDIA GeForce RTX 4070 SUPER",
+          "NVIDIA GeForce RTX 3060 Laptop GPU/PCIe/SSE2", "NVIDIA GeForce GTX 1060 with Max-Q Design/PCIe/SSE2",
+          "NVIDIA GeForce GTX 1060 3GB/PCIe/SSE2", "NVIDIA GeForce RTX 4090 D", "AMD Radeon RX 7900 XT (radeonsi, navi31, LLVM 15.0.7)",
+          "AMD Radeon RX 6800 XT (radeonsi, navi21, LLVM 15.0.6, DRM 3.49, 6.1.0)", "AMD Radeon RX 6800M (navi22, LLVM 15.0.6)",
+          "AMD Radeon RX 6800/6800 XT / 6900 XT (navi21, LLVM 13.0.1)", "Mesa Intel(R) Arc(tm) A770M Graphics (DG2)", "NVIDIA H200 NVL"})
+        EXPECT_EQ(named(other), "none") << other;
+    EXPECT_EQ(nearestGpu("NVIDIA GeForce RTX 3060 Ti/PCIe/SSE2", 365.0e9).gpu.name, "RTX 3060") << "by its bandwidth";
     const NearestGpu unknown = nearestGpu("some other GPU", 190.0e9);
     EXPECT_FALSE(unknown.byName);
     EXPECT_EQ(unknown.gpu.name, "GTX 1060");

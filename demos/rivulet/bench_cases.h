@@ -25,8 +25,10 @@ struct BenchRow {
 
 struct BenchContext {
     int runs = 5;                                 // measured runs of each row
-    bool quick = false;                           // gpu: one device, the smallest sizes
+    bool quick = false;                           // gpu: one device, the smallest sizes; gpu_model: nothing is measured
+    double seconds = 90;                          // gpu: it ends after about this time
     Json::Value* json = nullptr;                  // of --json: a case may add values under its own name
+    std::function<Status()> save;                 // writes it as it is so far: a case that takes long and may be interrupted
     std::string out;                              // output folder of the pages of a case; "": no pages
     Log log;                                      // notices, for example of an absent backend
     std::function<void(const BenchRow&)> report;  // prints a row at once

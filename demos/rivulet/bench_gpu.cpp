@@ -26,7 +26,9 @@ constexpr std::array<const char*, 3> kGpuMethods = {"pbf", "dfsph", "wcsph"};
 constexpr std::array<int, 4> kSides = {37, 53, 68, 79};             // 101,306; 297,754; 628,864; 986,078 particles
 constexpr std::array<int, 5> kSoftwareSides = {8, 11, 16, 24, 37};  // 1,024; 2,662; 8,192; 27,648; 101,306
 constexpr double kStepSeconds = 0.4;                                // of steps of one size, at least one
-constexpr double kSeriesSeconds = 36;  // of all sizes: no size is begun that would take longer, judged by the one before
+// Shares of the time that the command may take: after the first no comparison is begun, after the second no size. Sizes of one method on
+// one device are not begun if they would take longer than theirs of kSeriesShare, judged by the one before.
+constexpr double kChecksUntil = 0.45, kSeriesUntil = 0.9, kSeriesShare = 0.4;
 
 Json::Value jsonOf(const std::map<std::string, double>& values) {
     Json::Value v(Json::objectValue);
@@ -42,6 +44,7 @@ Json::Value jsonOf(const SeriesRow& row) {
     v["stepMs"] = row.stepMs;
     v["predictedStepMs"] = row.predictedStepMs;
     v["iterations"] = row.iterations;
+    v["warmSteps"] = row.warmSteps;
     v["frameMs"] = row.frameMs;
     v["predictedFrameMs"] = row.predictedFrameMs;
     v["passes"] = jsonOf(row.passes);
@@ -60,6 +63,7 @@ Json::Value jsonOf(const ExaminedGpu& e) {
     v["name"] = e.name;
     v["driver"] = e.device->info().driver;
     v["software"] = e.device->info().software;
+    if (e.from.empty()) return v;  // there was no time to measure its rates
     v["predictedFrom"] = e.from;
     Json::Value& r = v["rates"];
     r["bytesPerSecond"] = e.rates.bandwidth;
@@ -112,16 +116,23 @@ struct GpuDevices {
     std::string nameOf(const Device& device) const { return device.backend() == Backend::gl ? gl.renderer : device.info().name; }
 };
 
-Result<std::vector<GpuFinding>> compare(const GpuDevices& devices, const SceneFile& scene, Progress& progress) {
+// What is left out for lack of time or memory, to be named in one sentence.
+using LeftOut = std::vector<std::string>;
+
+Result<std::vector<GpuFinding>> compare(const GpuDevices& devices, const SceneFile& scene, double until, Progress& progress, LeftOut& out) {
     const std::unique_ptr<Device> cpu = makeCpu();
     std::vector<GpuFinding> findings;
     for (const std::unique_ptr<Device>& device : devices.list) {
         progress.show(0.05, fmt::format("{}: comparing with the cpu", backendName(device->backend())));
-        Result<std::vector<GpuFinding>> found = checkDevice(*device, *cpu);
+        Result<std::vector<GpuFinding>> found = checkDevice(*device, *cpu, until, out);
         if (!found) return found.error();
         findings.insert(findings.end(), found->begin(), found->end());
     }
     if (!devices.gl.present()) return findings;
+    if (hostSeconds() > until) {
+        out.emplace_back("gl: comparison of a picture");
+        return findings;
+    }
     Result<std::unique_ptr<FluidWorld>> world =
         FluidWorld::create(*devices.list.front(), seriesWater(scene, "pbf", kSoftwareSides[0]), {}, {});
     if (!world) return world.error();
@@ -132,33 +143,45 @@ Result<std::vector<GpuFinding>> compare(const GpuDevices& devices, const SceneFi
     return findings;
 }
 
-// Steps all methods on all devices, and draws the first method. Returns the row of the first device and method with most particles.
+// Steps all methods on all devices, and draws the first method. Each row is saved at once. Returns the row of the first device and method
+// with most particles.
 Result<std::optional<SeriesRow>> runSeries(const BenchContext& context, const std::vector<ExaminedGpu>& gpus, const SceneFile& scene,
-                                           SceneRenderer* renderer, Progress& progress, Json::Value& series) {
+                                           SceneRenderer* renderer, double until, Progress& progress, Json::Value& series, LeftOut& out) {
     std::optional<SeriesRow> largest;
-    const double begun = hostSeconds(), share = kSeriesSeconds / static_cast<double>(gpus.size() * kGpuMethods.size());
+    const double begun = hostSeconds(), share = kSeriesShare * context.seconds / static_cast<double>(gpus.size() * kGpuMethods.size());
     for (const ExaminedGpu& gpu : gpus)
         for (const char* method : kGpuMethods) {
             SceneRenderer* draws = method == kGpuMethods[0] ? renderer : nullptr;
             const std::span<const int> sides =
                 gpu.device->info().software ? std::span<const int>(kSoftwareSides) : std::span<const int>(kSides);
+            const char* device = backendName(gpu.device->backend());
             const double from = hostSeconds();
             double last = 0;  // s
             int before = 0;
+            const auto leaveOut = [&](int side, const char* lack) {
+                out.push_back(fmt::format("{}: {} with {} particles{}{}", device, method, seriesParticles(side),
+                                          side < sides.back() ? " and more" : "", lack));
+            };
             for (const int side : context.quick ? sides.first(1) : sides) {
                 const double at = hostSeconds(), expected = before > 0 ? last * seriesParticles(side) / seriesParticles(before) : 0;
-                if (at - from + expected > share) break;
-                progress.show(0.25 + 0.75 * std::min((at - begun) / kSeriesSeconds, 1.0),
-                              fmt::format("{}, {}, {} particles", backendName(gpu.device->backend()), method, seriesParticles(side)));
-                Result<SeriesRow> row = measureSeries(gpu, scene, method, side, context.quick ? 0 : kStepSeconds, draws);
+                if (at > until || at - from + expected > share) {
+                    leaveOut(side, "");
+                    break;
+                }
+                progress.show(0.25 + 0.75 * std::min((at - begun) / (until - begun), 1.0),
+                              fmt::format("{}, {}, {} particles", device, method, seriesParticles(side)));
+                Result<SeriesRow> row = measureSeries(gpu, scene, method, side, context.quick ? 0 : kStepSeconds, draws, until);
                 if (!row && row.error().memory && before > 0) {
                     gpu.device->forgiveFull();
+                    leaveOut(side, " (memory)");
                     break;  // as many as memory allows
                 }
                 if (!row) return row.error();
                 last = hostSeconds() - at;
                 before = side;
                 series.append(jsonOf(*row));
+                if (draws != nullptr && row->drawMs == 0)
+                    out.push_back(fmt::format("{}: a picture of {} particles", device, row->particles));
                 const auto report = [&](const std::string& what, const char* unit, double ms, double predicted) {
                     context.report({.name = fmt::format("gpu, {}: {}, {}", row->device, what, row->particles),
                                     .unit = unit,
@@ -167,6 +190,7 @@ Result<std::optional<SeriesRow>> runSeries(const BenchContext& context, const st
                 };
                 report(method, "ms/step", row->stepMs, row->predictedStepMs);
                 if (row->drawMs > 0) report("drawn", "ms", row->drawMs, row->predictedDrawMs);
+                if (Status saved = context.save(); !saved) return saved.error();
                 if (&gpu == &gpus.front() && method == kGpuMethods[0]) largest = std::move(*row);
             }
         }
@@ -181,7 +205,7 @@ Result<std::unique_ptr<SceneRenderer>> rendererOf(const GpuDevices& devices) {
 }  // namespace
 
 Status benchGpu(const BenchContext& context) {
-    const double start = hostSeconds();
+    const double start = hostSeconds(), seriesUntil = start + kSeriesUntil * context.seconds;
     const GpuDevices devices(context.log, context.quick);
     if (devices.list.empty()) {
         context.log.notice("the case gpu needs OpenGL or OpenCL, and this machine has neither: it is skipped");
@@ -191,9 +215,11 @@ Status benchGpu(const BenchContext& context) {
     if (!scene) return scene.error();
     Json::Value unused, &result = (context.json != nullptr ? *context.json : unused)["gpu"];
     Progress progress("gpu");
+    LeftOut out;
 
-    // Correctness first: the speed of wrong water is of no use.
-    const Result<std::vector<GpuFinding>> findings = compare(devices, *scene, progress);
+    // Correctness first: the speed of wrong water is of no use. What is known is saved at once: a person may send it after Ctrl-C.
+    result["complete"] = false;
+    const Result<std::vector<GpuFinding>> findings = compare(devices, *scene, start + kChecksUntil * context.seconds, progress, out);
     if (!findings) return findings.error();
     std::string wrong;
     result["checks"] = Json::Value(Json::arrayValue);
@@ -202,33 +228,52 @@ Status benchGpu(const BenchContext& context) {
         if (!f.passed()) wrong += fmt::format("{}{}", wrong.empty() ? "" : "; ", f.sentence());
     }
     result["correct"] = wrong.empty();
+    const char* verdict = !wrong.empty() ? "does not compute the same water as the cpu"
+                          : out.empty()  ? "computes the same water as the cpu"
+                                         : "computes the same water as the cpu, as far as there was time to compare";
+    if (Status saved = context.save(); !saved) return saved;
 
     std::vector<ExaminedGpu> gpus;
     result["devices"] = Json::Value(Json::arrayValue);
     for (const std::unique_ptr<Device>& device : devices.list) {
-        progress.show(0.2, fmt::format("{}: rates", backendName(device->backend())));
-        Result<ExaminedGpu> gpu = examineGpu(*device, devices.nameOf(*device));
+        const char* name = backendName(device->backend());
+        progress.show(0.2, fmt::format("{}: rates", name));
+        Result<ExaminedGpu> gpu = ExaminedGpu{.device = device.get(), .name = devices.nameOf(*device)};
+        if (hostSeconds() < seriesUntil)
+            gpu = examineGpu(*device, devices.nameOf(*device));
+        else
+            out.push_back(fmt::format("{}: rates", name));
         if (!gpu) return gpu.error();
         result["devices"].append(jsonOf(*gpu));
         gpus.push_back(std::move(*gpu));
+        if (Status saved = context.save(); !saved) return saved;
     }
-    const Result<std::unique_ptr<SceneRenderer>> renderer = rendererOf(devices);
+    Result<std::unique_ptr<SceneRenderer>> renderer = std::unique_ptr<SceneRenderer>();
+    if (hostSeconds() < seriesUntil) renderer = rendererOf(devices);
     if (!renderer) return renderer.error();
     result["series"] = Json::Value(Json::arrayValue);
-    const Result<std::optional<SeriesRow>> largest = runSeries(context, gpus, *scene, renderer->get(), progress, result["series"]);
+    const Result<std::optional<SeriesRow>> largest =
+        runSeries(context, gpus, *scene, renderer->get(), seriesUntil, progress, result["series"], out);
     if (!largest) return largest.error();
-    const std::string sentence =
-        fmt::format("{} {}; {} (from {}).", gpus.front().name,
-                    wrong.empty() ? "computes the same water as the cpu" : "does not compute the same water as the cpu",
-                    *largest ? sentenceOf(**largest) : "no size was measured", gpus.front().from);
+    std::string sentence = fmt::format("{} {}; ", gpus.front().name, verdict);
+    sentence += *largest ? fmt::format("{} (from {}).", sentenceOf(**largest), gpus.front().from) : "no size was measured.";
+    result["leftOut"] = Json::Value(Json::arrayValue);
+    for (const std::string& what : out) result["leftOut"].append(what);
+    if (!out.empty()) sentence += fmt::format(" Left out after {:.0f} s: {}.", hostSeconds() - start, fmt::join(out, "; "));
     result["sentence"] = sentence;
     result["seconds"] = hostSeconds() - start;
+    result["complete"] = true;
     fmt::print("{}\n", sentence);
     flushOutput();
     return wrong.empty() ? ok() : Status(failed(fmt::format("the water differs from the cpu's: {}", wrong)));
 }
 
 Status benchGpuModel(const BenchContext& context) {
+    if (context.quick) {
+        if (context.out.empty()) return badInput("bench gpu_model --quick measures nothing, and writes no page without --out");
+        const Graceful whole;
+        return writeGpuPage({}, context.out, "rivulet bench gpu_model --out " + context.out);
+    }
     const GpuDevices devices(context.log, false);
     Result<SceneFile> scene = loadScene("dam_break.json", {});
     if (!scene) return scene.error();

@@ -72,7 +72,10 @@ int benchVerb(const Arguments& arguments) {
     reader.option("--markdown", "FILE.md", "also write the results as a Markdown page, like docs/performance.md", markdownFile);
     reader.option("--out", "DIR", "output folder of the pages that chapter2 and chapter4 write; without it they write none", out);
     bool quick = false;
-    reader.flag("--quick", "gpu: one device and the smallest sizes only", quick);
+    std::optional<double> seconds;
+    reader.flag("--quick", "gpu: one device and the smallest sizes only; gpu_model: no measurements, the page keeps those that it has",
+                quick);
+    reader.option("--seconds", "S", "gpu: leaves out what takes longer than about this; default: 90", seconds, 1, 3600);
     reader.option("--runs", "N", "measured runs of each case; default: 5", runs, 5, 1000);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
@@ -97,12 +100,17 @@ int benchVerb(const Arguments& arguments) {
     all["version"] = RIVULET_VERSION;
     all["machine"] = machineName();
     all["rows"] = Json::Value(Json::arrayValue);
+    // What a pipe or device gets cannot be replaced by the next.
+    const bool replaced = !jsonFile.empty() && (!std::filesystem::exists(jsonFile) || std::filesystem::is_regular_file(jsonFile));
+    const auto save = [&]() -> Status { return replaced ? writeFileAtomic(jsonFile, jsonText(all, 6)) : ok(); };
     fmt::print("{}\n{:<44} {:>10} {:>10} {:>10}\n", machineName(), "", "median", "min", "max");
     Status done = ok();
     for (const BenchCase* benchCase : cases) {
         BenchContext context;
         context.quick = quick;
+        context.seconds = seconds.value_or(context.seconds);
         context.json = &all;
+        context.save = save;
         context.runs = runs.value_or(5);
         context.out = out;
         context.log = stderrLog();

@@ -4,13 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <limits>
+#include <optional>
 
+#include "engine/core/timeline.h"
+#include "fluid/flow/surface_flow.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/scene/solids_bullet.h"
 #include "fluid/session/scene_renderer.h"
+#include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/host_particles.h"
+#include "fluid/validate/flow_shapes.h"
 
 namespace rivulet {
 
@@ -47,15 +54,135 @@ Result<State> stateAfter(Device& device, const FluidParams& params) {
     return state;
 }
 
+// `most` is the larger of both; infinite where one is not a number.
+void raise(double& most, double value) {
+    if (!(value <= most)) most = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+}
+
 // The largest distance; infinite where one of the two has other particles, or no numbers.
 double farthest(const std::vector<vec4>& a, const std::vector<vec4>& b) {
     if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
     double most = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        const double apart = double{glm::length(vec3(a[i]) - vec3(b[i]))};
-        if (!(apart <= most)) most = std::isnan(apart) ? std::numeric_limits<double>::infinity() : apart;
-    }
+    for (size_t i = 0; i < a.size(); ++i) raise(most, double{glm::length(vec3(a[i]) - vec3(b[i]))});
     return most;
+}
+
+// Bodies in contact, in water: on a floor stands a box of twice water's density, and another falls on it. Positions of particles that touch
+// bodies part soon, by rounding; what is compared is where the boxes are when they have come to rest.
+constexpr float kBox = 0.2F;           // m, its edge
+constexpr int kSettling = 15;          // frames of 1/60 s
+constexpr double kHeightLimit = 0.05;  // of the edge
+constexpr double kLeanLimit = 0.1;     // of the edge: how far one has gone sideways
+Result<std::optional<std::vector<vec3>>> pileAfter(Device& device, double until) {
+    FluidParams p;
+    p.method = "pbf";
+    p.spacing = kSpacing;
+    p.fixedStep = 1.0F / 240;
+    p.box.max = vec3(0.4F, 0.6F, 0.4F);
+    p.blocks = {{vec3(0.0F), vec3(0.4F, 0.2F, 0.4F), vec3(0.0F)}};
+    Solids solids;
+    std::vector<BodyForm> forms(2);
+    for (size_t k = 0; k < forms.size(); ++k) {
+        Body& body = solids.bodies.emplace_back();
+        body.shape = boxShape(vec3(kBox), 2000, kSpacing);
+        body.state.pose.position = vec3(0.2F, kBox * (0.5F + 1.15F * static_cast<float>(k)), 0.2F);
+        forms[k].size = vec3(kBox);
+    }
+    BulletSolids contacts({.box = p.box, .planes = {}, .still = {}, .moving = {}, .poses = {}}, solids.bodies, forms);
+    solids.bodyHost = contacts.host();
+    Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(device, p, solids, {});
+    if (!world) return world.error();
+    for (int k = 0; k < kSettling; ++k) {
+        if (hostSeconds() > until) return std::optional<std::vector<vec3>>();
+        (*world)->step({.gravity = p.gravity}, 1.0 / 60);
+        device.finish();
+        device.poll();
+        if (Status stepped = (*world)->lastStep(); !stepped) return stepped.error();
+    }
+    std::vector<vec3> places;
+    for (const BodyState& state : (*world)->bodies()) places.push_back(state.pose.position);
+    return std::optional(std::move(places));
+}
+
+// Drops on a skin, which run down, merge and leave trails: how much of them is still drops, and where the middle of that is.
+constexpr float kBall = 0.03F;        // m, the skin's radius
+constexpr int kRunning = 30;          // frames of 1/60 s
+constexpr double kDropsLimit = 0.05;  // of their volume: two that cross one cell share it in the order of the threads, by 2.8 % at most
+constexpr double kPlaceLimit = 0.03;  // of the radius
+struct Drops {
+    double volume = 0;  // m^3
+    dvec3 middle{0.0};  // m
+};
+Result<std::optional<Drops>> dropsAfter(Device& device, double until) {
+    Result<FlowMesh> mesh = makeFlowMesh(ballShape(kBall, 16).view());
+    if (!mesh) return mesh.error();
+    SurfaceFlowParams p;
+    p.capacity = 256;
+    Result<SurfaceFlow> flow = SurfaceFlow::create(device, std::move(*mesh), p);
+    if (!flow) return flow.error();
+    for (int k = 0; k < kRunning; ++k) {
+        if (hostSeconds() > until) return std::optional<Drops>();
+        if (k % 2 == 0) {
+            const double angle = 0.7 * k;
+            const vec3 at = kBall * glm::normalize(vec3(dvec3(0.5 * std::cos(angle), 0.7, 0.5 * std::sin(angle))));
+            flow->add(nearestPoint(flow->mesh(), at), 10000000 + 500000U * static_cast<uint32_t>(k % 7));
+        }
+        if (Status stepped = flow->step({}, 1.0 / 60); !stepped) return stepped.error();
+        device.finish();
+        device.poll();
+    }
+    Drops drops;
+    for (const SkinDrop& drop : flow->drops()) {
+        drops.volume += drop.volume;
+        drops.middle += drop.volume * dvec3(drop.position);
+    }
+    drops.middle /= drops.volume;  // no drop at all: not a number, which does not pass
+    return std::optional(drops);
+}
+
+Result<bool> checkWater(Device& device, Device& cpu, const char* name, const FluidParams& params, std::vector<GpuFinding>& found) {
+    const Result<State> here = stateAfter(cpu, params), there = stateAfter(device, params);
+    if (!here) return here.error();
+    if (!there) return there.error();
+    const double fall = std::sqrt(2 * 9.81 * 1.0);
+    found.push_back({backendName(device.backend()), fmt::format("{}: positions after {} steps", name, kSteps), "spacings",
+                     farthest(here->position, there->position) / double{params.spacing}, kPositionLimit});
+    found.push_back({backendName(device.backend()), fmt::format("{}: velocities after {} steps", name, kSteps), "of a fall's speed",
+                     farthest(here->velocity, there->velocity) / fall, kSpeedLimit});
+    return true;
+}
+
+// True if there was time for it.
+Result<bool> checkBodies(Device& device, Device& cpu, double until, std::vector<GpuFinding>& found) {
+    const Result<std::optional<std::vector<vec3>>> expected = pileAfter(cpu, until), got = pileAfter(device, until);
+    if (!expected) return expected.error();
+    if (!got) return got.error();
+    const std::optional<std::vector<vec3>>&here = *expected, &there = *got;
+    if (!here || !there) return false;
+    double high = 0, aside = 0;
+    for (size_t k = 0; k < here->size(); ++k) {
+        const dvec3 apart(there->at(k) - here->at(k));
+        raise(high, std::abs(apart.y) / double{kBox});
+        raise(aside, std::hypot(apart.x, apart.z) / double{kBox});
+    }
+    const char* name = backendName(device.backend());
+    found.push_back({name, "bodies in contact in water: heights at rest", "of a body", high, kHeightLimit});
+    found.push_back({name, "bodies in contact in water: places on the floor at rest", "of a body", aside, kLeanLimit});
+    return true;
+}
+
+Result<bool> checkDrops(Device& device, Device& cpu, double until, std::vector<GpuFinding>& found) {
+    const Result<std::optional<Drops>> expected = dropsAfter(cpu, until), got = dropsAfter(device, until);
+    if (!expected) return expected.error();
+    if (!got) return got.error();
+    const std::optional<Drops>&here = *expected, &there = *got;
+    if (!here || !there) return false;
+    const char* name = backendName(device.backend());
+    found.push_back({name, fmt::format("drops on a skin: their volume after {} steps", kRunning), "of it",
+                     std::abs(there->volume / here->volume - 1), kDropsLimit});
+    found.push_back({name, fmt::format("drops on a skin: their middle after {} steps", kRunning), "of the skin's radius",
+                     glm::length(there->middle - here->middle) / double{kBall}, kPlaceLimit});
+    return true;
 }
 
 }  // namespace
@@ -78,26 +205,24 @@ std::string GpuFinding::sentence() const {
                     : fmt::format("{}: {} differ by {:.3g} {}, allowed are {:.2g}", device, what, difference, unit, limit);
 }
 
-Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu) {
+Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu, double until, std::vector<std::string>& leftOut) {
     std::vector<GpuFinding> found;
     FluidParams forces = oneStepDam("dfsph", kSpacing);
     forces.forces.tension = 0.07F;
     forces.forces.vorticity = 0.1F;
     forces.viscosity = 1.0e-3F;
-    const std::pair<const char*, FluidParams> cases[] = {{"wcsph", oneStepDam("wcsph", kSpacing)},
-                                                         {"pbf", oneStepDam("pbf", kSpacing)},
-                                                         {"dfsph", oneStepDam("dfsph", kSpacing)},
-                                                         {"dfsph with tension and vorticity", forces}};
-    for (const auto& [name, params] : cases) {
-        const Result<State> here = stateAfter(cpu, params);
-        if (!here) return here.error();
-        const Result<State> there = stateAfter(device, params);
-        if (!there) return there.error();
-        const double fall = std::sqrt(2 * 9.81 * 1.0);
-        found.push_back({backendName(device.backend()), fmt::format("{}: positions after {} steps", name, kSteps), "spacings",
-                         farthest(here->position, there->position) / double{params.spacing}, kPositionLimit});
-        found.push_back({backendName(device.backend()), fmt::format("{}: velocities after {} steps", name, kSteps), "of a fall's speed",
-                         farthest(here->velocity, there->velocity) / fall, kSpeedLimit});
+    const auto water = [&](const char* name, const FluidParams& params) { return checkWater(device, cpu, name, params, found); };
+    const std::pair<const char*, std::function<Result<bool>()>> checks[] = {
+        {"wcsph", [&] { return water("wcsph", oneStepDam("wcsph", kSpacing)); }},
+        {"pbf", [&] { return water("pbf", oneStepDam("pbf", kSpacing)); }},
+        {"dfsph", [&] { return water("dfsph", oneStepDam("dfsph", kSpacing)); }},
+        {"dfsph with tension and vorticity", [&] { return water("dfsph with tension and vorticity", forces); }},
+        {"bodies in contact in water", [&] { return checkBodies(device, cpu, until, found); }},
+        {"drops on a skin", [&] { return checkDrops(device, cpu, until, found); }}};
+    for (const auto& [name, check] : checks) {
+        Result<bool> done = found.empty() || hostSeconds() <= until ? check() : Result<bool>(false);
+        if (!done) return done.error();
+        if (!*done) leftOut.push_back(fmt::format("{}: comparison of {}", backendName(device.backend()), name));
     }
     return found;
 }

@@ -23,8 +23,10 @@ struct GpuFinding {
 // A dam break with particles `spacing` m apart in which a frame of 1/1600 s is one step on every device, for any method.
 FluidParams oneStepDam(const char* method, float spacing);
 
-// Steps small worlds, one for each method and one with all forces, on both. Error: a kernel does not compile, or memory is exhausted.
-Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu);
+// Steps small worlds on both: one for each method, one with all forces, bodies in contact in water, and drops on a skin. Error: a kernel
+// does not compile, or memory is exhausted. When hostSeconds() is past `until`, those that
+// have not been done are named in `leftOut`; the first always is.
+Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu, double until, std::vector<std::string>& leftOut);
 
 // Draws water with the context that is current: the share of pixels that the water changes, against that of its particles projected on the
 // CPU. Error (failed): a shader does not compile, or out of GPU memory.

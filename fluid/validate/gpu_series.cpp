@@ -22,13 +22,14 @@ void scaleTo(double ms, std::map<std::string, double>& passes) {
         for (auto& [name, each] : passes) each *= ms / sum;
 }
 
-// Draws a world seven times after the first; the fastest picture counts.
-Status drawSeries(const ExaminedGpu& gpu, const FluidWorld& world, SceneRenderer& renderer, const SceneFile& scene, SeriesRow& row) {
+// Draws a world seven times after the first, fewer past `until`; the fastest picture counts.
+Status drawSeries(const ExaminedGpu& gpu, const FluidWorld& world, SceneRenderer& renderer, const SceneFile& scene, double until,
+                  SeriesRow& row) {
     const Bounds bounds{world.params().box.min, world.params().box.max};
     const FrameView view = frameViewOf(cameraOf(scene.camera, bounds), scene.light, kSeriesWidth, kSeriesHeight, 0);
     FluidUpload upload;
     row.drawMs = 1.0e9;
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0; k < 2 || (k < 8 && hostSeconds() < until); ++k) {
         const double start = deviceSeconds(*gpu.device);
         const Result<FluidView> fluid = upload.view(world, scene.look);
         if (!fluid) return fluid.error();
@@ -79,7 +80,7 @@ FluidParams seriesWater(const SceneFile& damBreak, const char* method, int side)
 }
 
 Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBreak, const char* method, int side, double seconds,
-                                SceneRenderer* renderer) {
+                                SceneRenderer* renderer, double until) {
     Device& device = *gpu.device;
     const FluidParams params = seriesWater(damBreak, method, side);
     Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(device, params, {}, {});
@@ -94,12 +95,13 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
         device.poll();
         return world.lastSubsteps();
     };
-    for (int k = 0; k < 8; ++k) advance();  // compiles kernels; a GPU at first queues iterations generously, and reports them late
+    // The first compiles kernels; a GPU at first queues iterations generously, and reports them late.
+    for (; row.warmSteps < 8 && (row.warmSteps == 0 || hostSeconds() < until); ++row.warmSteps) advance();
     device.takeTimes();
     int steps = 0, calls = 0;
     double iterations = 0;
     const double start = deviceSeconds(device), wall = hostSeconds();
-    while (calls == 0 || hostSeconds() - wall < seconds) {
+    while (calls == 0 || hostSeconds() < std::min(wall + seconds, until)) {
         const int done = advance();
         for (const PassTime& t : device.takeTimes()) {
             const auto [at, fresh] = row.passes.try_emplace(t.name, t.ms / done);
@@ -120,8 +122,8 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
     // The frame: as many substeps, each with as many iterations, as a run on the cpu has. The share of iterations is the model's.
     row.predictedFrameMs = predictSteps(gpu.model, method, row.particles, work).ms();
     row.frameMs = row.predictedStepMs > 0 ? row.stepMs / row.predictedStepMs * row.predictedFrameMs : 0;
-    if (renderer != nullptr)
-        if (Status drawn = drawSeries(gpu, world, *renderer, damBreak, row); !drawn) return drawn.error();
+    if (renderer != nullptr && hostSeconds() < until)
+        if (Status drawn = drawSeries(gpu, world, *renderer, damBreak, until, row); !drawn) return drawn.error();
     return row;
 }
 

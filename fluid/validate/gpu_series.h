@@ -30,6 +30,7 @@ struct SeriesRow {
     double stepMs = 0, predictedStepMs = 0;                                   // of a substep
     double frameMs = 0, predictedFrameMs = 0;                                 // of 1/60 s, with the substeps and iterations of frames.csv
     double iterations = 0;                                                    // of the pressure solver, in a substep
+    int warmSteps = 0;                                                        // before those that are measured: 8, if there is time
     double drawMs = 0, predictedDrawMs = 0;                                   // of a picture; 0: not drawn
     std::map<std::string, double> passes = {}, predictedPasses = {};          // of a substep: the least, scaled to stepMs if it is software
     std::map<std::string, double> drawPasses = {}, predictedDrawPasses = {};  // of a picture
@@ -38,9 +39,10 @@ struct SeriesRow {
 int seriesParticles(int side);  // a column `side` particles wide and deep, twice as high
 FluidParams seriesWater(const SceneFile& damBreak, const char* method, int side);
 
-// Steps the column for `seconds` on the wall, one substep at least, and draws it with `renderer`, if it is not null. Error: out of memory
+// Steps the column for `seconds` on the wall, and draws it with `renderer`, if it is not null. When hostSeconds() is past `until`, it ends
+// after the step or picture at hand: it has then measured one step at least, and no picture unless it had begun. Error: out of memory
 // (Error::memory), or the device failed.
 Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBreak, const char* method, int side, double seconds,
-                                SceneRenderer* renderer);
+                                SceneRenderer* renderer, double until = 1.0e300);
 
 }  // namespace rivulet

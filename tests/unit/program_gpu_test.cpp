@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <json/json.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 
@@ -29,7 +30,7 @@ bool absent(const Outcome& outcome) {
 TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
     const Scratch scratch;
     const std::string json = (scratch.path() / "gpu.json").string();
-    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--json", json});
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900", "--json", json});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     if (absent(outcome)) GTEST_SKIP() << outcome.err;
     EXPECT_NE(outcome.out.find("computes the same water as the cpu; "), std::string::npos) << outcome.out;
@@ -38,8 +39,10 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
     EXPECT_GT(gpu["seconds"].asDouble(), 0);
     EXPECT_NE(outcome.out.find(gpu["sentence"].asString()), std::string::npos);
     ASSERT_GT(gpu["devices"].size(), 0U);
-    // Per device: each method's positions and velocities, and those with forces.
-    EXPECT_GE(gpu["checks"].size(), 8 * gpu["devices"].size());
+    EXPECT_TRUE(gpu["complete"].asBool());
+    EXPECT_EQ(gpu["leftOut"].size(), 0U);
+    // Per device: positions and velocities of each method and of one with forces, bodies in contact, drops on a skin.
+    EXPECT_GE(gpu["checks"].size(), 12 * gpu["devices"].size());
     for (const Json::Value& check : gpu["checks"]) {
         EXPECT_TRUE(check["pass"].asBool()) << check["what"].asString();
         EXPECT_LE(check["difference"].asDouble(), check["limit"].asDouble());
@@ -66,22 +69,86 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
     }
 }
 
+// A copy of the shaders, for a program whose kernels are wrong.
+class Shaders {
+  public:
+    explicit Shaders(const Scratch& scratch) : root_(scratch.path() / "root") {
+        std::filesystem::create_directories(root_);
+        std::filesystem::copy(RIVULET_SOURCE_DIR "/shaders", root_ / "shaders", std::filesystem::copy_options::recursive);
+    }
+    void replace(const std::string& kernel, const std::string& right, const std::string& wrong) const {
+        const std::string path = (root_ / "shaders" / (kernel + ".kernel")).string();
+        const Result<std::string> text = readFile(path);
+        ASSERT_TRUE(text);
+        const size_t at = text->find(right);
+        ASSERT_NE(at, std::string::npos) << kernel;
+        std::ofstream(path) << std::string(*text).replace(at, right.size(), wrong);
+    }
+    RunOptions options() const {
+        RunOptions options;
+        options.environment["RIVULET_SHADERS"] = root_.string();
+        return options;
+    }
+
+  private:
+    std::filesystem::path root_;
+};
+
+// Methods stay right: what is found is where bodies and drops have come to.
+TEST(ProgramGpu, WrongContactsAndDropsAreFoundWhereWaterIsRight) {
+    const Scratch scratch;
+    const Shaders shaders(scratch);
+    shaders.replace("fluid/solids/advance_touching", "c.normal = vec4(n, massAlong(n, toA, toB, c.turnA.xyz, c.turnB.xyz, inverse));",
+                    "c.normal = vec4(n, 0.0f);");
+    shaders.replace("flow/walk", "w.v * PARAMS.dt);", "w.v * (1.5f * PARAMS.dt));");
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900"}, shaders.options());
+    if (absent(outcome)) GTEST_SKIP() << outcome.err;
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("bodies in contact in water: heights at rest differ by"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("drops on a skin: their middle after 30 steps differ by"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("positions after"), std::string::npos) << outcome.err;
+}
+
+TEST(ProgramGpu, EndsInTimeAndNamesWhatIsLeftOut) {
+    const Scratch scratch;
+    const std::string json = (scratch.path() / "gpu.json").string();
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "1", "--json", json});
+    if (absent(outcome)) GTEST_SKIP() << outcome.err;
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("as far as there was time to compare; no size was measured"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("comparison of drops on a skin; "), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("pbf with "), std::string::npos) << outcome.out;
+    const Json::Value gpu = readJson(json)["gpu"];
+    EXPECT_TRUE(gpu["complete"].asBool());
+    EXPECT_EQ(gpu["series"].size(), 0U);
+    EXPECT_GE(gpu["checks"].size(), 2U);
+    EXPECT_GE(gpu["leftOut"].size(), 5U);
+    ASSERT_EQ(gpu["devices"].size(), 1U);
+    EXPECT_FALSE(gpu["devices"][0]["name"].asString().empty());
+}
+
+// As soon as the comparisons are done they are in the file, and stay there.
+TEST(ProgramGpu, AnInterruptedRunLeavesWhatItKnows) {
+    const Scratch scratch;
+    const std::string json = (scratch.path() / "gpu.json").string();
+    RunOptions options;
+    options.whileRunning = [&json](pid_t) { return std::filesystem::exists(json) ? SIGINT : 0; };
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900", "--json", json}, options);
+    if (absent(outcome)) GTEST_SKIP() << outcome.err;
+    EXPECT_EQ(outcome.code, 130) << outcome.err;
+    const Json::Value all = readJson(json), &gpu = all["gpu"];
+    EXPECT_FALSE(all["machine"].asString().empty());
+    EXPECT_FALSE(gpu["complete"].asBool());
+    EXPECT_TRUE(gpu["correct"].asBool());
+    EXPECT_GE(gpu["checks"].size(), 12U);
+}
+
 TEST(ProgramGpu, AWrongKernelIsNamedAndEndsWithOne) {
     const Scratch scratch;
-    const std::filesystem::path root = scratch.path() / "root";
-    std::filesystem::create_directories(root);
-    std::filesystem::copy(RIVULET_SOURCE_DIR "/shaders", root / "shaders", std::filesystem::copy_options::recursive);
-    const std::string kernel = (root / "shaders/fluid/methods/pbf_shift.kernel").string();
-    const Result<std::string> text = readFile(kernel);
-    ASSERT_TRUE(text);
-    const std::string right = "real3 x = xi - sum * LIGHTNESS;";
-    const size_t at = text->find(right);
-    ASSERT_NE(at, std::string::npos);
-    std::ofstream(kernel) << std::string(*text).replace(at, right.size(), "real3 x = xi + sum * LIGHTNESS;");
-    RunOptions options;
-    options.environment["RIVULET_SHADERS"] = root.string();
+    const Shaders shaders(scratch);
+    shaders.replace("fluid/methods/pbf_shift", "real3 x = xi - sum * LIGHTNESS;", "real3 x = xi + sum * LIGHTNESS;");
     const std::string json = (scratch.path() / "gpu.json").string();
-    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--json", json}, options);
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900", "--json", json}, shaders.options());
     if (absent(outcome)) GTEST_SKIP() << outcome.err;
     EXPECT_EQ(outcome.code, 1);
     EXPECT_NE(outcome.err.find("pbf: positions after 10 steps differ by"), std::string::npos) << outcome.err;

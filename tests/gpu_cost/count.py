@@ -6,7 +6,9 @@
 
     python3 tests/gpu_cost/count.py passes  [--build build/release]   what each drawing pass does: gpu_cost_passes, which it builds; minutes
 
-    python3 tests/gpu_cost/count.py waves                             fills the column `waves` of kernels.csv from tests/gpus/table.csv
+    python3 tests/gpu_cost/count.py small   [--build build/release]   what each kernel does in the small worlds of tests/races; 15 minutes
+
+    python3 tests/gpu_cost/count.py waves                             fills the columns `waves` from tests/gpus/table.csv
 
 Needs the packages oclgrind, liboclgrind-dev and llvm-14-dev (kernels), glslang-tools and spirv-tools (passes). The scene is dam_break with default settings but for method and spacing.
 """
@@ -28,6 +30,10 @@ FRAMES = 24
 ITERATIONS = 5  # of a solver while it is counted: with the sweep for a frame's figures, a third of pbf_lambda's search for neighbours, as by default
 ITERATED = {"fluid/methods/pbf_lambda", "fluid/methods/pbf_shift", "fluid/solids/follow_walls", "fluid/methods/dfsph_rate", "fluid/methods/dfsph_push",
             "fluid/methods/residual", "fluid/methods/solver_progress"}
+# Worlds of tests/races that together run every kernel that any of them runs, about as few as possible.
+WORLDS = ("skin", "thesisFlow", "flow", "bodiesTouch", "voxels", "wetness", "foam", "sources", "queries", "sleep", "implicitViscosity", "shifted", "pbf", "periodic",
+          "thesis", "wcsph", "bodiesPbf")
+PLAIN = {"bodiesPbf"}  # optimised code of probe_response has an intrinsic that Oclgrind 21.10 does not know: counted as it is written
 ONCE = {"fluid/surface/ellipsoids", "fluid/world/stats", "fluid/world/set_ratio"}  # a frame
 
 
@@ -50,28 +56,28 @@ def settings(method, spacing):
     return ["--set", f"fluid.method={method}", "--set", f"fluid.spacing={spacing}", "--no-render"]
 
 
-def paths():
-    """Name of a kernel -> its path below shaders: the names of those in fluid/ are unique."""
-    return {p.stem: p.relative_to(ROOT / "shaders").with_suffix("").as_posix() for p in (ROOT / "shaders/fluid").rglob("*.kernel")}
-
-
 def occupancy():
-    """Path of a kernel -> the share of waves that its registers allow on NAVI21, where tests/gpus has measured it; the least of its variants."""
+    """(Path of a kernel, variant as counter.cpp writes it) -> the share of waves that its registers allow on NAVI21, where tests/gpus has measured it."""
     table = ROOT / "tests/gpus/table.csv"
     shares = {}
     if not table.exists():
         return shares
     lines = [line for line in table.read_text().splitlines() if not line.startswith("#")]
     for row in csv.DictReader(lines):
-        if "navi21" not in row["device"].lower() or not row["waves"] or not row["most_waves"]:
+        if row["device"] != "NAVI21" or row["stage"] != "compute":
             continue
-        share = float(row["waves"]) / float(row["most_waves"])
-        shares[row["kernel"]] = min(share, shares.get(row["kernel"], 1.0))
+        defines = sorted(d for d in row["variant"].split(";") if d and not d.startswith("LOCAL_SIZE="))
+        shares[row["kernel"], ";".join(defines) or "-"] = float(row["waves"]) / float(row["most_waves"])
     return shares
 
 
-def count_kernels(program, to, spacings, methods):
-    rows, names, waves = [], paths(), occupancy()
+def waves_of(shares, row):
+    """Of the variants that were counted: their waves differ by half and more. The least of them, if there are several. 1 if tests/gpus has none of them."""
+    return f"{min((shares[row['kernel'], v] for v in row['variants'].split() if (row['kernel'], v) in shares), default=1):.3g}"
+
+
+def count_kernels(program, to, spacings, methods, _worlds):
+    rows, waves = [], occupancy()
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         counter = plugin(folder)
@@ -84,11 +90,12 @@ def count_kernels(program, to, spacings, methods):
                 run(["oclgrind", "--num-threads", 1, "--plugins", counter, program, "run", "dam_break", *settings(method, spacing), "--backend", "cl",
                      "--resume", state, "--frames", 1, "--stats", stats, "--set", "fluid.longestFrame=0.001", "--set", "fluid.soundSpeed=1",
                      "--set", f"fluid.dfsph.maxIterations={ITERATIONS}", "--set", f"fluid.pbf.iterations={ITERATIONS}",
-                     "--set", "fluid.dfsph.tolerance=1e-6"], RIVULET_COUNTS=counts, XDG_CACHE_HOME=folder)
+                     "--set", "fluid.dfsph.tolerance=1e-6"], RIVULET_COUNTS=counts, XDG_CACHE_HOME=folder / f"{method}{spacing}")
                 substeps = json.loads(stats.read_text())["substeps"]
                 for row in csv.DictReader(io.StringIO(counts.read_text())):
                     calls, per = float(row.pop("calls")) / substeps, "step"
-                    path = names[row.pop("kernel")]
+                    path = row.pop("kernel")
+                    row.pop("groups")
                     if path in ITERATED:
                         calls, per = 1, "iteration"
                     elif path in ONCE:
@@ -97,24 +104,54 @@ def count_kernels(program, to, spacings, methods):
                         calls -= 1 / substeps  # for the figures of the frame
                     # The figures of a frame need walls and densities where the last step has left the particles.
                     more = 1 if method == "pbf" and path in ("fluid/solids/near_walls", "fluid/methods/pbf_lambda") else 0
-                    rows.append({"method": method, "particles": particles, "kernel": path, "per": per, "calls": f"{calls:g}", "frame_calls": more,
-                                 "waves": f"{waves.get(path, 1):.3g}", **row})
+                    rows.append({"method": method, "particles": particles, "kernel": path, "variants": row.pop("variants"), "per": per,
+                                 "calls": f"{calls:g}", "frame_calls": more, "waves": "", **row})
+                    rows[-1]["waves"] = waves_of(waves, rows[-1])
                 print(f"{method}, {particles} particles: {substeps} substeps", flush=True)
     write(to / "kernels.csv", "What the kernels of dam_break do in a dispatch, a thread, means: counted in Oclgrind by tests/gpu_cost/count.py kernels.\n"
-          "# per: calls are in a step, an iteration or a frame; frame_calls: in a frame, more. waves: share of a GPU's waves that registers allow. step8, step32, step64: operations\n"
+          "# variants: its defines, - if none. per: calls are in a step, an iteration or a frame; frame_calls: in a frame, more. waves: share of a GPU's waves that\n"
+          "# registers allow. step8, step32, step64: operations\n"
           "# of a thread where so many go through the code in step. longest: operations and loads of the longest thread of a dispatch. sectors:\n"
           "# 32 bytes, of the accesses of 32 threads together, over 32. Bytes: read and written, each sector once a dispatch; group_bytes: once a\n"
           "# work group.", rows)
 
 
 def fill_waves(_program, to, *_):
-    """1 of a kernel that tests/gpus has not measured."""
-    path, waves = to / "kernels.csv", occupancy()
-    lines = path.read_text().splitlines(keepends=True)
-    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    for row in rows:
-        row["waves"] = f"{waves.get(row['kernel'], 1):.3g}"
-    write(path, "".join(line for line in lines if line.startswith("#"))[2:].rstrip("\n"), rows)
+    waves = occupancy()
+    for path in (to / "kernels.csv", to / "kernels_small.csv"):
+        lines = path.read_text().splitlines(keepends=True)
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+        for row in rows:
+            row["waves"] = waves_of(waves, row)
+        write(path, "".join(line for line in lines if line.startswith("#"))[2:].rstrip("\n"), rows)
+
+
+def count_small(program, to, _spacings, _methods, worlds):
+    rows, waves = {}, occupancy()
+    if worlds != WORLDS:
+        lines = (to / "kernels_small.csv").read_text().splitlines()
+        rows = {(row["kernel"], row["variants"]): row for row in csv.DictReader(line for line in lines if not line.startswith("#")) if row["world"] not in worlds}
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        counter = plugin(folder)
+        for world in worlds:
+            counts = folder / "counts.csv"
+            run(["oclgrind", "--num-threads", 1, "--plugins", counter, program.parent / "test_races", "--gtest_filter=*SmallWorlds*cl"], RIVULET_COUNTS=counts,
+                RIVULET_COUNT_VARIANTS=1, RIVULET_RACES="full", RIVULET_WORLDS=world, RIVULET_TEST_DEVICES=1, XDG_CACHE_HOME=folder / world,
+                **({"OCLGRIND_BUILD_OPTIONS": "-cl-opt-disable"} if world in PLAIN else {}))
+            for row in csv.DictReader(io.StringIO(counts.read_text())):
+                key = row.pop("kernel"), row.pop("variants")
+                plain = int(world in PLAIN)
+                # Of several worlds the one with the largest dispatches, and none whose code is not optimised if there is another.
+                if key in rows and (plain, -float(row["threads"])) >= (int(rows[key]["plain"]), -float(rows[key]["threads"])):
+                    continue
+                rows[key] = {"kernel": key[0], "variants": key[1], "world": world, "plain": plain, "waves": "", **row}
+                rows[key]["waves"] = waves_of(waves, rows[key])
+            print(f"{world}: {len(rows)} variants of {len({kernel for kernel, _ in rows})} kernels so far", flush=True)
+    write(to / "kernels_small.csv", "What kernels do in the small worlds of tests/races, of some hundred particles: counted in Oclgrind by tests/gpu_cost/count.py small. No\n"
+          "# benchmark: fixed costs dominate. A row is a variant of a kernel (variants: its defines, - if none), in the world with the largest dispatches\n"
+          "# of it. plain: 1 if its code was not optimised, as Oclgrind does not know an intrinsic of another kernel of that world: it has more operations then.\n"
+          "# calls: dispatches; groups, threads: of one dispatch, means. Other columns: see kernels.csv.", [rows[key] for key in sorted(rows)])
 
 
 def count_frames(program, to, *_):
@@ -220,14 +257,15 @@ def write(path, doc, rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("kernels", "frames", "passes", "waves"))
+    parser.add_argument("table", choices=("kernels", "frames", "passes", "small", "waves"))
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--to", default=TABLES, type=pathlib.Path, help="folder of the table")
     parser.add_argument("--spacings", default=SPACINGS, type=float, nargs="+", help="of kernels, m: at least two for a prediction")
     parser.add_argument("--methods", default=METHODS, nargs="+", help="of kernels")
+    parser.add_argument("--worlds", default=WORLDS, nargs="+", help="of small: only these, the others keep their rows")
     arguments = parser.parse_args()
     program = arguments.build.resolve() / "bin/rivulet"
-    {"kernels": count_kernels, "frames": count_frames, "passes": count_passes, "waves": fill_waves}[arguments.table](program, arguments.to, arguments.spacings, arguments.methods)
+    {"kernels": count_kernels, "frames": count_frames, "passes": count_passes, "small": count_small, "waves": fill_waves}[arguments.table](program, arguments.to, arguments.spacings, arguments.methods, arguments.worlds)
 
 
 if __name__ == "__main__":

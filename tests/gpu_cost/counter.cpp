@@ -1,6 +1,7 @@
 // A plugin of Oclgrind (Price and McIntosh-Smith 2015) that counts what OpenCL kernels execute: operations by class, bytes, the memory that
-// a work group and a dispatch touch, and how unevenly the threads of a warp are loaded. Appends a row for each kernel to the file
-// RIVULET_COUNTS when the program ends. All figures are for a thread, means over all dispatches of the kernel, unless they say otherwise.
+// a work group and a dispatch touch, and how unevenly the threads of a warp are loaded. Writes a row for each kernel to the file
+// RIVULET_COUNTS when the program ends; with RIVULET_COUNT_VARIANTS a row for each of its variants. All figures are for a thread, means
+// over all dispatches of the row, unless they say otherwise. A program that comes from a cache has no text that says which variant it is.
 //
 // Arithmetic on a vector counts once for each component, and a * b + c, where the compiler may contract it, once. Operations that cost a
 // GPU nothing are not counted: moves between registers, which Oclgrind sees as loads and stores of private memory, phi nodes, casts of
@@ -12,6 +13,7 @@
 #include <llvm/IR/DerivedTypes.h>
 #include <llvm/IR/Dominators.h>
 #include <llvm/IR/Instructions.h>
+#include <llvm/Support/CommandLine.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +21,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <set>
+#include <sstream>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -29,6 +33,7 @@
 #include "oclgrind/KernelInvocation.h"
 #include "oclgrind/Memory.h"
 #include "oclgrind/Plugin.h"
+#include "oclgrind/Program.h"
 #include "oclgrind/WorkGroup.h"
 #include "oclgrind/WorkItem.h"
 
@@ -57,7 +62,35 @@ struct Sums {
     std::array<double, kClasses> count{};
     std::array<double, kWidths.size()> inStep{};  // operations of threads that go through the code in step
     double longest = 0, longestLoads = 0;         // of the longest thread of each dispatch
+    double groups = 0;
+    std::set<std::string> variants;
 };
+
+// A kernel's path below shaders and its defines, from its text: the defines are its first lines, and #line names its files. The size of its
+// work groups is none of its variants.
+struct Origin {
+    std::string path, variant;
+};
+Origin originOf(const oclgrind::Kernel& kernel) {
+    const std::string file = "/" + kernel.getName() + ".kernel\"";
+    Origin origin{kernel.getName(), ""};
+    std::set<std::string> defines;
+    std::istringstream lines(kernel.getProgram()->getSource());
+    bool first = true;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string directive, name, value;
+        words >> directive >> name >> value;
+        first = first && directive == "#define";
+        if (first && name != "LOCAL_SIZE") defines.insert(name + "=" + value);
+        const size_t at = line.find("shaders/");
+        if (directive == "#line" && line.ends_with(file) && at != std::string::npos)
+            origin.path = line.substr(at + 8, line.size() - at - 8 - std::string(".kernel\"").size());
+    }
+    for (const std::string& define : defines) origin.variant += (origin.variant.empty() ? "" : ";") + define;
+    if (origin.variant.empty()) origin.variant = "-";
+    return origin;
+}
 
 double widthOf(const llvm::Type* type) {
     if (const auto* vector = llvm::dyn_cast<llvm::FixedVectorType>(type))
@@ -72,7 +105,11 @@ class Counter final : public oclgrind::Plugin {
     bool isThreadSafe() const override { return false; }
 
     void kernelBegin(const oclgrind::KernelInvocation* invocation) override {
-        sums_ = &all_[invocation->getKernel()->getName()];
+        const auto [known, fresh] = origins_.try_emplace(invocation->getKernel()->getProgram()->getUID());
+        if (fresh) known->second = originOf(*invocation->getKernel());
+        const Origin& origin = known->second;
+        sums_ = &all_[std::getenv("RIVULET_COUNT_VARIANTS") != nullptr ? origin.path + "," + origin.variant : origin.path];
+        sums_->variants.insert(origin.variant);
         ++sums_->calls;
         read_.clear();
         written_.clear();
@@ -94,6 +131,7 @@ class Counter final : public oclgrind::Plugin {
     }
     void workGroupComplete(const oclgrind::WorkGroup*) override {
         sums_->threads += static_cast<double>(threads_.size());
+        ++sums_->groups;
         sums_->groupBytes += static_cast<double>(kSector * touched_.size());
         for (const Thread& t : threads_) {
             for (size_t k = 0; k < kClasses; ++k) sums_->count[k] += t.count[k];
@@ -322,12 +360,15 @@ class Counter final : public oclgrind::Plugin {
         if (path == nullptr) return;
         std::FILE* file = std::fopen(path, "w");
         if (file == nullptr) return;
-        std::fprintf(file, "kernel,calls,threads");
+        std::fprintf(file, "kernel,variants,calls,groups,threads");
         for (const char* name : kNames) std::fprintf(file, ",%s", name);
         std::fprintf(file,
                      ",load_bytes,store_bytes,step8,step32,step64,longest,longest_loads,sectors,group_bytes,read_bytes,written_bytes\n");
         for (const auto& [name, s] : all_) {
-            std::fprintf(file, "%s,%.0f,%.1f", name.c_str(), s.calls, s.threads / s.calls);
+            std::string variants;
+            for (const std::string& each : s.variants) variants += (variants.empty() ? "" : " ") + each;
+            std::fprintf(file, "%s,%s,%.0f,%.1f,%.1f", name.substr(0, name.find(',')).c_str(), variants.c_str(), s.calls,
+                         s.groups / s.calls, s.threads / s.calls);
             for (const double c : s.count) std::fprintf(file, ",%.4g", c / s.threads);
             std::fprintf(file, ",%.4g,%.4g", s.loadBytes / s.threads, s.storeBytes / s.threads);
             for (const double w : s.inStep) std::fprintf(file, ",%.5g", w / s.threads);
@@ -338,6 +379,7 @@ class Counter final : public oclgrind::Plugin {
     }
 
     std::map<std::string, Sums> all_;
+    std::unordered_map<unsigned long, Origin> origins_;  // by program
     Sums* sums_ = nullptr;
     std::vector<Thread> threads_;
     Thread longest_;
@@ -357,8 +399,16 @@ class Counter final : public oclgrind::Plugin {
 
 static Counter* counter = nullptr;
 
+// Optimised code may declare scopes of restrict pointers, by an intrinsic that Oclgrind 21.10 does not know: LLVM's inliner is told not to.
+static void declareNoScopes() {
+    auto& options = llvm::cl::getRegisteredOptions();
+    const auto found = options.find("use-noalias-intrinsic-during-inlining");
+    if (found != options.end()) found->second->addOccurrence(0, found->first(), "false");
+}
+
 extern "C" {
 void initializePlugins(oclgrind::Context* context) {
+    declareNoScopes();
     counter = new Counter(context);
     context->registerPlugin(counter);
 }

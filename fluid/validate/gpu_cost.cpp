@@ -4,9 +4,10 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
-
 #include <sstream>
+
 #include "engine/core/assert.h"
 #include "fluid/session/reference_data.h"
 
@@ -166,7 +167,6 @@ std::string lowerOf(std::string_view text) {
     return lower;
 }
 
-}  // namespace
 // Words after a model's number that make another model of it, with other units or clocks.
 const std::set<std::string, std::less<>> kOtherModels = {"ti",     "super", "xt",    "xtx",  "xtxh",   "gre", "laptop",
                                                          "mobile", "max-q", "max-p", "d",    "m",      "s",   "le",
@@ -194,6 +194,7 @@ bool namesModel(std::string_view renderer, std::string_view model) {
     return true;
 }
 
+}  // namespace
 
 double FrameCost::ms() const {
     double sum = 0;
@@ -324,6 +325,46 @@ FrameCost predictPicture(const GpuSpec& gpu, double particles) {
         passes.push_back(std::move(pass));
     }
     return sorted(std::move(passes));
+}
+
+double CountedKernel::operations() const { return std::accumulate(count.begin(), count.end(), 0.0); }
+
+std::vector<CountedKernel> countedKernels() {
+    const ReferenceRows table = rowsOf(gpuTables(), "kernels_small");
+    std::vector<CountedKernel> all;
+    all.reserve(table.rows.size());
+    for (const std::vector<std::string_view>& row : table.rows) {
+        const auto number = [&](const char* column) { return numberIn(row[table.column(column)]); };
+        CountedKernel k;
+        k.name = row[table.column("kernel")];
+        k.variant = row[table.column("variants")];
+        k.plain = number("plain") > 0;
+        k.threads = number("threads");
+        k.groups = number("groups");
+        for (size_t of = 0; of < kGpuOps; ++of) k.count[of] = number(kColumns[of]);
+        k.step32 = number("step32");
+        k.bytes = number("read_bytes") + number("written_bytes");
+        k.longest = number("longest");
+        k.longestLoads = number("longest_loads");
+        k.sectors = number("sectors");
+        k.waves = number("waves") > 0 ? number("waves") : 1;
+        all.push_back(std::move(k));
+    }
+    return all;
+}
+
+double predictDispatch(const GpuSpec& gpu, const CountedKernel& kernel) {
+    KernelWork w;
+    w.name = kernel.name;
+    w.threads = kernel.threads;
+    w.count = kernel.count;
+    w.step8 = w.step32 = w.step64 = kernel.operations() > 0 ? std::max(kernel.step32 / kernel.operations(), 1.0) : 1.0;
+    w.longest = kernel.longest;
+    w.longestLoads = kernel.longestLoads;
+    w.sectors = kernel.sectors;
+    w.bytes = kernel.bytes;
+    w.waves = kernel.waves;
+    return 1000 * dispatchOf(gpu, w).seconds;
 }
 
 }  // namespace rivulet

@@ -76,4 +76,20 @@ FrameCost predictSteps(const GpuSpec& gpu, std::string_view method, double parti
 // A picture of it, 1920x1080, quality fine: passes.csv, for its nearest number of particles, scaled.
 FrameCost predictPicture(const GpuSpec& gpu, double particles);
 
+// A kernel as a small world of tests/races runs it, kernels_small.csv: means over its dispatches. These worlds have some hundred particles.
+struct CountedKernel {
+    bool plain = false;                    // its code was not optimised: more operations than a GPU's
+    std::string name, variant;             // "flow/push", "FILM=1"; "-": without defines
+    double threads = 0, groups = 0;        // of a dispatch
+    std::array<double, kGpuOps> count{};   // operations of a thread
+    double step32 = 0;                     // operations of a thread where 32 go through the code in step
+    double bytes = 0;                      // of memory, of a thread
+    double longest = 0, longestLoads = 0;  // operations and loads of the longest thread
+    double sectors = 0, waves = 1;         // as in kernels.csv
+    double operations() const;
+};
+std::vector<CountedKernel> countedKernels();
+// The time of one such dispatch, ms: with its launch.
+double predictDispatch(const GpuSpec& gpu, const CountedKernel& kernel);
+
 }  // namespace rivulet

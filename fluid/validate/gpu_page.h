@@ -14,7 +14,9 @@ struct GpuModelRun {
     std::vector<SeriesRow> rows;
 };
 
-// Writes FOLDER/gpus.md and FOLDER/gpus.csv; `command` is named in the page. Error (failed): a file cannot be written.
+// Writes FOLDER/gpus.md and FOLDER/gpus.csv; `command` is named in the page. Without gpus in `run`, what an older FOLDER/gpus.md says of
+// the devices of its machine stays, and predictions are written anew. Error (failed): a file cannot be written; (badInput) there is no
+// older page.
 Status writeGpuPage(const GpuModelRun& run, const std::string& folder, const std::string& command);
 
 }  // namespace rivulet

@@ -1,8 +1,14 @@
 // The cost model of GPUs: its tables name real kernels, and its predictions follow from what a device can do.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "fluid/session/reference_data.h"
 #include "fluid/validate/gpu_cost.h"
@@ -122,6 +128,135 @@ TEST(GpuCost, AGpuIsFoundByItsNameOrItsBandwidth) {
     const NearestGpu unknown = nearestGpu("some other GPU", 190.0e9);
     EXPECT_FALSE(unknown.byName);
     EXPECT_EQ(unknown.gpu.name, "GTX 1060");
+}
+
+// Of the kernels in none of the tables. map_tiles is the cpu's form of map_quads, and those of bench measure a device; the others are run
+// by no small world (tests/races/small_worlds_test.cpp).
+const std::set<std::string> kNotCounted = {"bench/rate_copy",         "bench/rate_math",      "flow/map_tiles",
+                                           "fluid/grid/bounds",       "fluid/grid/cell_of",   "fluid/sleep/sleep_disturb",
+                                           "fluid/sleep/sleep_drawn", "fluid/sources/forget", "fluid/surface/ellipsoids_free",
+                                           "fluid/surface/foam_drawn"};
+
+TEST(GpuCost, EveryKernelIsCounted) {
+    std::set<std::string> counted;
+    for (const char* name : {"kernels", "kernels_small"}) {
+        const ReferenceRows table = rowsOf(gpuTables(), name);
+        for (const auto& row : table.rows) counted.emplace(row[table.column("kernel")]);
+    }
+    const std::filesystem::path shaders = RIVULET_SOURCE_DIR "/shaders";
+    std::set<std::string> all;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(shaders))
+        if (file.path().extension() == ".kernel")
+            all.insert(std::filesystem::relative(file.path(), shaders).replace_extension().generic_string());
+    EXPECT_GT(all.size(), 140U);
+    for (const std::string& kernel : all)
+        EXPECT_NE(counted.contains(kernel), kNotCounted.contains(kernel))
+            << kernel << " is in no table (python3 tests/gpu_cost/count.py small), or need no longer be in kNotCounted";
+    for (const std::string& kernel : counted) EXPECT_TRUE(all.contains(kernel)) << kernel << " is no kernel any more";
+}
+
+TEST(GpuCost, ADispatchOfOneGroupTakesItsLongestThread) {
+    const std::vector<GpuSpec> all = publishedGpus();
+    size_t single = 0;
+    for (const CountedKernel& k : countedKernels()) {
+        EXPECT_GT(k.threads, 0) << k.name;
+        EXPECT_GE(k.threads, k.groups) << k.name;
+        EXPECT_GE(k.longest, 0.999 * k.operations()) << k.name;
+        EXPECT_GE(k.step32, 0.999 * k.operations()) << k.name;
+        EXPECT_GT(k.waves, 0) << k.name;
+        EXPECT_LE(k.waves, 1) << k.name;
+        for (const GpuSpec& gpu : all) {
+            const double ms = predictDispatch(gpu, k);
+            EXPECT_GE(ms, 1000 * (gpu.launch + k.longest * gpu.operationLatency)) << k.name;
+            EXPECT_LT(ms, 100) << k.name;
+        }
+        if (k.name == "fluid/solids/advance_touching") {
+            EXPECT_EQ(k.groups, 1);
+            ++single;
+        }
+    }
+    EXPECT_GT(single, 0U);
+}
+
+// The cells of the tables of a page below a heading, up to the next heading.
+std::vector<std::vector<std::string>> cellsUnder(const std::string& heading) {
+    std::ifstream page(RIVULET_SOURCE_DIR "/docs/gpus.md");
+    std::vector<std::vector<std::string>> rows;
+    bool under = false;
+    for (std::string line; std::getline(page, line);) {
+        if (line.starts_with("## ")) under = line == "## " + heading;
+        if (!under || !line.starts_with("| ")) continue;
+        std::vector<std::string> cells;
+        for (size_t at = 1, end = 0; (end = line.find('|', at)) != std::string::npos; at = end + 1) {
+            const std::string cell = line.substr(at, end - at);
+            const size_t first = cell.find_first_not_of(' ');
+            cells.push_back(first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
+        }
+        rows.push_back(std::move(cells));
+    }
+    return rows;
+}
+double numberOf(const std::string& cell) { return std::strtod(cell.c_str(), nullptr); }
+// Of rows that end with measured, predicted and error: the error is the one over the other, as both are rounded. Returns it, %.
+double errorOf(const std::vector<std::string>& row) {
+    const double measured = numberOf(row[row.size() - 3]), predicted = numberOf(row[row.size() - 2]), error = numberOf(row.back());
+    EXPECT_NEAR(error, 100 * (predicted / measured - 1), 0.51 + predicted / measured) << row[0] << " " << row[1] << " " << row[2];
+    return error;
+}
+
+TEST(GpuCostPage, ErrorsAreThoseOfItsFiguresAndBelowThirtyPercentOnTheDevicesHere) {
+    size_t results = 0, passes = 0;
+    for (const auto& row : cellsUnder("Error on the devices here")) {
+        if (row.size() != 6 || row.back().find('%') == std::string::npos) continue;
+        const double error = errorOf(row);
+        if (numberOf(row[2]) > 0) {  // particles: of a whole substep or picture. Else a pass
+            EXPECT_LE(std::abs(error), 30) << row[0] << " " << row[1];
+            ++results;
+        } else {
+            ++passes;
+        }
+    }
+    EXPECT_EQ(results, 7U);
+    EXPECT_GT(passes, 20U);
+}
+
+TEST(GpuCostPage, ItsSentencesCarryTheErrorAgainstAGpu) {
+    double least = 1.0e9, most = -1.0e9;
+    for (const auto& row : cellsUnder("Against a GPU"))
+        if (row.size() == 7 && row.back().find('%') != std::string::npos) {
+            const double error = errorOf(row);
+            least = std::min(least, error);
+            most = std::max(most, error);
+        }
+    EXPECT_LT(least, most);
+    std::ifstream page(RIVULET_SOURCE_DIR "/docs/gpus.md");
+    size_t sentences = 0;
+    for (std::string line; std::getline(page, line);)
+        if (line.starts_with("RTX 3060: a frame of a million") || line.starts_with("RX 6800: a frame of a million")) {
+            EXPECT_NE(line.find(fmt::format("off by {:+.0f} % to {:+.0f} %", least, most)), std::string::npos) << line;
+            ++sentences;
+        }
+    EXPECT_EQ(sentences, 2U);
+}
+
+// Predictions are written anew when a table changes: rivulet bench gpu_model --quick --out docs.
+TEST(GpuCostPage, ItsPredictionsAreThoseOfTheTables) {
+    std::ifstream file(RIVULET_SOURCE_DIR "/docs/gpus.csv");
+    const std::vector<GpuSpec> gpus = publishedGpus();
+    size_t rows = 0;
+    for (std::string line; std::getline(file, line);) {
+        std::vector<std::string> cells;
+        std::istringstream words(line);
+        for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
+        ASSERT_EQ(cells.size(), 7U) << line;
+        const auto gpu = std::find_if(gpus.begin(), gpus.end(), [&](const GpuSpec& g) { return g.name == cells[0]; });
+        if (gpu == gpus.end()) continue;
+        const double particles = numberOf(cells[2]), steps = frameMs(*gpu, cells[1].c_str(), particles);
+        EXPECT_NEAR(numberOf(cells[5]), steps, 1.0e-3 * steps) << line;
+        EXPECT_NEAR(numberOf(cells[6]), predictPicture(*gpu, particles).ms(), 1.0e-3 * predictPicture(*gpu, particles).ms()) << line;
+        ++rows;
+    }
+    EXPECT_EQ(rows, gpus.size() * 6);
 }
 
 }  // namespace

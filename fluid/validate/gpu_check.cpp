@@ -70,7 +70,7 @@ double farthest(const std::vector<vec4>& a, const std::vector<vec4>& b) {
 // Bodies in contact, in water: on a floor stands a box of twice water's density, and another falls on it. Positions of particles that touch
 // bodies part soon, by rounding; what is compared is where the boxes are when they have come to rest.
 constexpr float kBox = 0.2F;           // m, its edge
-constexpr int kSettling = 15;          // frames of 1/60 s
+constexpr int kPileFrames = 15;        // frames of 1/60 s
 constexpr double kHeightLimit = 0.05;  // of the edge
 constexpr double kLeanLimit = 0.1;     // of the edge: how far one has gone sideways
 Result<std::optional<std::vector<vec3>>> pileAfter(Device& device, double until) {
@@ -92,7 +92,7 @@ Result<std::optional<std::vector<vec3>>> pileAfter(Device& device, double until)
     solids.bodyHost = contacts.host();
     Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(device, p, solids, {});
     if (!world) return world.error();
-    for (int k = 0; k < kSettling; ++k) {
+    for (int k = 0; k < kPileFrames; ++k) {
         if (hostSeconds() > until) return std::optional<std::vector<vec3>>();
         (*world)->step({.gravity = p.gravity}, 1.0 / 60);
         device.finish();
@@ -105,7 +105,7 @@ Result<std::optional<std::vector<vec3>>> pileAfter(Device& device, double until)
 }
 
 // Drops on a skin, which run down, merge and leave trails: how much of them is still drops, and where the middle of that is.
-constexpr float kBall = 0.03F;        // m, the skin's radius
+constexpr float kSkinRadius = 0.03F;  // m, the skin's radius
 constexpr int kRunning = 30;          // frames of 1/60 s
 constexpr double kDropsLimit = 0.05;  // of their volume: two that cross one cell share it in the order of the threads, by 2.8 % at most
 constexpr double kPlaceLimit = 0.03;  // of the radius
@@ -114,7 +114,7 @@ struct Drops {
     dvec3 middle{0.0};  // m
 };
 Result<std::optional<Drops>> dropsAfter(Device& device, double until) {
-    Result<FlowMesh> mesh = makeFlowMesh(ballShape(kBall, 16).view());
+    Result<FlowMesh> mesh = makeFlowMesh(ballShape(kSkinRadius, 16).view());
     if (!mesh) return mesh.error();
     SurfaceFlowParams p;
     p.capacity = 256;
@@ -124,7 +124,7 @@ Result<std::optional<Drops>> dropsAfter(Device& device, double until) {
         if (hostSeconds() > until) return std::optional<Drops>();
         if (k % 2 == 0) {
             const double angle = 0.7 * k;
-            const vec3 at = kBall * glm::normalize(vec3(dvec3(0.5 * std::cos(angle), 0.7, 0.5 * std::sin(angle))));
+            const vec3 at = kSkinRadius * glm::normalize(vec3(dvec3(0.5 * std::cos(angle), 0.7, 0.5 * std::sin(angle))));
             flow->add(nearestPoint(flow->mesh(), at), 10000000 + 500000U * static_cast<uint32_t>(k % 7));
         }
         if (Status stepped = flow->step({}, 1.0 / 60); !stepped) return stepped.error();
@@ -181,7 +181,7 @@ Result<bool> checkDrops(Device& device, Device& cpu, double until, std::vector<G
     found.push_back({name, fmt::format("drops on a skin: their volume after {} steps", kRunning), "of it",
                      std::abs(there->volume / here->volume - 1), kDropsLimit});
     found.push_back({name, fmt::format("drops on a skin: their middle after {} steps", kRunning), "of the skin's radius",
-                     glm::length(there->middle - here->middle) / double{kBall}, kPlaceLimit});
+                     glm::length(there->middle - here->middle) / double{kSkinRadius}, kPlaceLimit});
     return true;
 }
 

@@ -31,7 +31,7 @@ const GpuSpec* find(const std::vector<GpuSpec>& all, std::string_view name) {
 std::string percent(double share) { return fmt::format("{:+.0f} %", 100 * share); }
 
 // Three digits that count, without an exponent.
-std::string figure(double value) {
+std::string threeDigits(double value) {
     if (!(std::abs(value) >= 1000)) return fmt::format("{:.3g}", value);
     const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 2);
     return fmt::format("{:.0f}", std::round(value / unit) * unit);
@@ -50,20 +50,20 @@ std::string headOf(const std::vector<std::string>& columns) {
 }
 
 // A frame that was measured on a GPU, beside the prediction: with the kernels of that version.
-struct Compared {
+struct MeasuredFrame {
     std::string gpu, backend, method;
     double particles = 0, measured = 0, predicted = 0;
     double error() const { return errorOf(predicted, measured); }
 };
-std::vector<Compared> comparisons(const std::vector<GpuSpec>& gpus) {
+std::vector<MeasuredFrame> comparisons(const std::vector<GpuSpec>& gpus) {
     const ReferenceRows table = rowsOf(gpuTables(), "measured");
-    std::vector<Compared> all;
+    std::vector<MeasuredFrame> all;
     for (const std::vector<std::string_view>& row : table.rows) {
         const auto cell = [&](const char* column) { return row[table.column(column)]; };
         const GpuSpec* gpu = find(gpus, cell("gpu"));
         if (gpu == nullptr) continue;
-        Compared c{gpu->name, std::string(cell("backend")), std::string(cell("method")), numberIn(cell("particles")),
-                   numberIn(cell("frame_ms"))};
+        MeasuredFrame c{gpu->name, std::string(cell("backend")), std::string(cell("method")), numberIn(cell("particles")),
+                        numberIn(cell("frame_ms"))};
         c.predicted = predictSteps(*gpu, c.method, c.particles, measuredWork(c.method, c.particles), "kernels_before").ms();
         all.push_back(std::move(c));
     }
@@ -84,16 +84,16 @@ std::string predictions(const std::vector<GpuSpec>& gpus) {
         page += fmt::format("| {} |", gpu.name);
         for (const double particles : kParticles) {
             for (const char* method : kMethods)
-                page += fmt::format(" {} |", figure(predictSteps(gpu, method, particles, measuredWork(method, particles)).ms()));
-            page += fmt::format(" {} |", figure(predictPicture(gpu, particles).ms()));
+                page += fmt::format(" {} |", threeDigits(predictSteps(gpu, method, particles, measuredWork(method, particles)).ms()));
+            page += fmt::format(" {} |", threeDigits(predictPicture(gpu, particles).ms()));
         }
         page += "\n";
     }
     // The one GPU that was measured says how far off these may be.
-    const std::vector<Compared> measured = comparisons(gpus);
+    const std::vector<MeasuredFrame> measured = comparisons(gpus);
     std::string off;
     if (!measured.empty()) {
-        const auto by = [](const Compared& a, const Compared& b) { return a.error() < b.error(); };
+        const auto by = [](const MeasuredFrame& a, const MeasuredFrame& b) { return a.error() < b.error(); };
         const auto [least, most] = std::minmax_element(measured.begin(), measured.end(), by);
         off = fmt::format(
             " No such GPU was measured. On the one GPU that was, an {}, predicted frames are off by {} to {} ([Against a "
@@ -105,7 +105,7 @@ std::string predictions(const std::vector<GpuSpec>& gpus) {
             const double steps = predictSteps(*gpu, "pbf", 1.0e6, measuredWork("pbf", 1.0e6)).ms(),
                          picture = predictPicture(*gpu, 1.0e6).ms();
             page += fmt::format("\n{}: a frame of a million particles with pbf is predicted to take {} ms: {} to simulate, {} to draw.{}\n",
-                                name, figure(steps + picture), figure(steps), figure(picture), off);
+                                name, threeDigits(steps + picture), threeDigits(steps), threeDigits(picture), off);
         }
     return page + "\n";
 }
@@ -113,7 +113,7 @@ std::string predictions(const std::vector<GpuSpec>& gpus) {
 void addPasses(std::string& page, const FrameCost& cost, double particles, size_t most) {
     for (size_t k = 0; k < std::min(cost.passes.size(), most); ++k) {
         const PassCost& p = cost.passes[k];
-        page += fmt::format("| {} | {} | {:.0f} % | {} | {:.0f} | {:.0f} | {:.0f} |\n", p.name, figure(p.ms), 100 * p.ms / cost.ms(),
+        page += fmt::format("| {} | {} | {:.0f} % | {} | {:.0f} | {:.0f} | {:.0f} |\n", p.name, threeDigits(p.ms), 100 * p.ms / cost.ms(),
                             p.bound, p.dispatches, p.operations / particles / std::max(p.dispatches, 1.0),
                             p.bytes / particles / std::max(p.dispatches, 1.0));
     }
@@ -232,7 +232,7 @@ std::string errorsThere(const std::vector<GpuSpec>& gpus) {
         "not fitted to them. The predictions are for the kernels of that version (`assets/gpus/kernels_before.csv`, counted with 1,024 "
         "particles).\n\n" +
         headOf({"GPU", "backend", "method", "particles", "measured, ms a frame", "predicted", "error"});
-    for (const Compared& c : comparisons(gpus))
+    for (const MeasuredFrame& c : comparisons(gpus))
         page += fmt::format("| {} | {} | {} | {:.0f} | {:.3g} | {:.3g} | {} |\n", c.gpu, c.backend, c.method, c.particles, c.measured,
                             c.predicted, percent(c.error()));
     return page + "\n";
@@ -300,8 +300,8 @@ std::string everyKernel(const std::vector<GpuSpec>& gpus) {
     page += headOf({"kernel; variant", "work items", "operations", "in step", "bytes", "longest thread"});
     for (const CountedKernel& k : all)
         if (others.contains(k.name))
-            page += fmt::format("| {} | {:.0f} | {} | {} | {} | {:.0f} |\n", nameOf(k), k.threads, figure(k.operations()), figure(k.step32),
-                                figure(k.bytes), k.longest);
+            page += fmt::format("| {} | {:.0f} | {} | {} | {} | {:.0f} |\n", nameOf(k), k.threads, threeDigits(k.operations()),
+                                threeDigits(k.step32), threeDigits(k.bytes), k.longest);
     page +=
         "\nSome dispatches are a single work group: one multiprocessor works, and all others of the GPU have nothing to do. Their longest "
         "thread decides, whatever the size of the GPU. `fluid/solids/advance_touching` is always one group; most others have more where a "
@@ -316,7 +316,7 @@ std::string everyKernel(const std::vector<GpuSpec>& gpus) {
             const GpuSpec* gpu = find(gpus, name);
             const double us = gpu != nullptr ? 1000 * predictDispatch(*gpu, k) : 0;
             most = std::max(most, us);
-            row += fmt::format(" {} |", figure(us));
+            row += fmt::format(" {} |", threeDigits(us));
         }
         if (k.groups == 1 && most > 10) page += row + "\n";
     }

@@ -350,7 +350,7 @@ drawing pass takes the sum of its operations, written fragments, and filtered an
 ## Limits of the model
 
 - The predictions for GPUs were compared with one GPU, an H100 ([Against a GPU](#against-a-gpu)): all others are not tested.
-- That the errors on the devices here are below 30 % was found on one machine, whose processor has AVX-512, with one size, 8,192 particles. Other
+- The errors on the devices here, below 30 %, were measured on one machine, with a processor that has AVX-512, and at one size, 8,192 particles. Other
   processors, other versions of Mesa and PoCL, and other sizes were not compared. With earlier kernels the errors on that machine were up to 32 %.
 - The clock is the boost clock, and nothing else runs on the GPU. A GPU that lowers its clock is slower in proportion.
 - Counts are of OpenCL C compiled by clang for Oclgrind; a driver's compiler may contract, unroll or spill otherwise.

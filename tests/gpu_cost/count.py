@@ -142,7 +142,7 @@ def count_small(program, to, _spacings, _methods, worlds):
             for row in csv.DictReader(io.StringIO(counts.read_text())):
                 key = row.pop("kernel"), row.pop("variants")
                 plain = int(world in PLAIN)
-                # Of several worlds the one with the largest dispatches, and none whose code is not optimised if there is another.
+                # If several worlds run it: the one with the largest dispatches. Optimised code comes before code that is not.
                 if key in rows and (plain, -float(row["threads"])) >= (int(rows[key]["plain"]), -float(rows[key]["threads"])):
                     continue
                 rows[key] = {"kernel": key[0], "variants": key[1], "world": world, "plain": plain, "waves": "", **row}

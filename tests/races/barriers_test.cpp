@@ -135,8 +135,9 @@ std::string writer(const std::string& sentence) {
     return sentence.substr(from, sentence.find(" wrote", from) - from);
 }
 
-// Of the first barriers of a step, all but two follow a kernel whose results the next kernel uses. Not reported are the barrier of poll(),
-// before which nothing was written since the last one, and that after near_walls: dfsph_warm, which follows, reads nothing of it.
+// The first 12 barriers of a step. The watch reports 10 of them: there the next kernel uses what the kernel before it wrote. Two are not
+// needed here: that of poll(), as nothing was written since the barrier before it; and that after near_walls, as dfsph_warm, the next
+// kernel, reads none of its results.
 TEST(BarriersOfDeviceGl, OneThatIsLeftOutIsReported) {
     Result<TestGpu> gpu = makeTestGpu("gl");
     if (!gpu) GTEST_SKIP() << gpu.error().message;

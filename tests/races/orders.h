@@ -32,8 +32,8 @@ Result<ShaderFiles> shadersIn(const Order& order);
 enum class NanHabit { second, spreads, inverts };
 Result<ShaderFiles> shadersWith(NanHabit habit);
 
-// A cpu whose kernels run one work item after the other in that order, on one thread. There is one order at a time: it holds for all such
-// devices.
+// A cpu whose kernels run one work item after the other in that order, on one thread. All such devices have the order of the
+// last call.
 std::unique_ptr<CpuDevice> cpuIn(const Order& order);
 
 }  // namespace rivulet::races

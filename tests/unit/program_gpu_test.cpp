@@ -69,7 +69,7 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
     }
 }
 
-// A copy of the shaders, for a program whose kernels are wrong.
+// A copy of the shaders in which a test plants faults; options() makes the program use it.
 class Shaders {
   public:
     explicit Shaders(const Scratch& scratch) : root_(scratch.path() / "root") {

@@ -104,6 +104,13 @@ Answer periodic(Device& device) {
     p.gravity = vec3(0.0F);
     const Answer closed = particlesAfter(device, p);
     all.exact.insert(all.exact.end(), closed.exact.begin(), closed.exact.end());
+    // A box so large that the grid covers a part of it and follows the water.
+    p = column("dfsph");
+    p.box.max = vec3(20.0F);
+    p.blocks[0].min += vec3(10, 0, 10);
+    p.blocks[0].max += vec3(10, 0, 10);
+    const Answer wide = particlesAfter(device, p);
+    all.exact.insert(all.exact.end(), wide.exact.begin(), wide.exact.end());
     return all;
 }
 Answer liquids(Device& device) {

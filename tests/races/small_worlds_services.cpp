@@ -9,11 +9,30 @@
 
 namespace rivulet::races {
 
-// Emitters, sinks, dry volumes, attributes, watched volumes, exchange.
+namespace {
+
+// The sums of what is drawn about each particle: of free slots nothing is.
+void addEllipsoids(FluidWorld& world, std::vector<float>& to) {
+    const ParticleView view = world.particles();
+    const std::vector<vec4> position = world.device().readAll<vec4>(*view.position, view.count);
+    for (const Buffer* of : view.ellipsoids) {
+        ASSERT_NE(of, nullptr);
+        const std::vector<vec4> all = world.device().readAll<vec4>(*of, view.count);
+        dvec4 sum(0.0);
+        for (size_t k = 0; k < all.size(); ++k)
+            if (!(position[k].w < 0)) sum += dvec4(all[k]);
+        add(to, vec4(sum / static_cast<double>(view.count)));
+    }
+}
+
+}  // namespace
+
+// Emitters, sinks, dry volumes, attributes, watched volumes, exchange, ellipsoids of particles that come and go.
 Answer sources(Device& device) {
     FluidParams p = column("pbf");
     p.attributes = {{.name = "team", .x = 1}, {.name = "age"}};
     p.maxParticles = 600;
+    p.ellipsoids = true;
     Sources s;
     s.emitters.resize(2);
     s.emitters[0].params = {.litresPerSecond = 40, .position = vec3(0.4F, 0.35F, 0.15F), .radius = 0.06F};
@@ -55,25 +74,39 @@ Answer sources(Device& device) {
     EXPECT_EQ(static_cast<size_t>(std::ranges::count(claimed, 1U)), claims.size() - 1);
     addMeans(*world, a.near);
     for (const VolumeCount& count : world->volumes()) a.near.push_back(0.001F * static_cast<float>(count.inside));
+    addEllipsoids(*world, a.near);
     a.within = 0.01;
+    // dfsph remembers the pressure of each particle, and forgets it where one is removed.
+    Sources drain;
+    drain.sinks = s.sinks;
+    world = make(device, column("dfsph"), {}, drain);
+    if (!world) return a;
+    for (int k = 0; k < 2; ++k) step(*world);
+    EXPECT_GT(world->stats().drained, 0);
+    addParticles(*world, a.exact);
     return a;
 }
+// Drawn between steps of a fixed length.
 Answer foam(Device& device) {
     FluidParams p = column("pbf");
     p.foam.most = 2000;
     p.foam.trappedAir = p.foam.waveCrest = 20000;
     p.foam.airFrom = p.foam.crestFrom = p.foam.speedFrom = 0.0F;
     p.foam.airTo = p.foam.crestTo = p.foam.speedTo = 0.05F;
+    p.fixedStep = static_cast<float>(kStep);
     Answer a;
     auto world = make(device, p);
     if (!world) return a;
-    for (int k = 0; k < 4; ++k) step(*world);
+    for (int k = 0; k < 4; ++k) step(*world, {}, 1.1 * kStep);
     addParticles(*world, a.exact);
     const ParticleView view = world->particles();
-    std::vector<vec4> cloud = device.readAll<vec4>(*view.foam, view.foamSlots);
-    std::erase_if(cloud, [](const vec4& x) { return !(x.w > 0); });
-    EXPECT_GT(cloud.size(), 50U);
-    addMeans(cloud, a.near);
+    EXPECT_NE(view.foamDrawn, view.foam);
+    for (const Buffer* of : {view.foam, view.foamDrawn}) {
+        std::vector<vec4> cloud = device.readAll<vec4>(*of, view.foamSlots);
+        std::erase_if(cloud, [](const vec4& x) { return !(x.w > 0); });
+        EXPECT_GT(cloud.size(), 50U);
+        addMeans(cloud, a.near);
+    }
     a.within = 0.05;  // the random numbers of a foam particle are those of its slot
     return a;
 }
@@ -90,6 +123,28 @@ Answer sleep(Device& device) {
         addParticles(*world, a.exact);
         a.exact.push_back(static_cast<float>(world->stats().asleep));
     }
+    // A paddle moves at one end of a long tank: the water there wakes. Ellipsoids of what sleeps stay.
+    FluidParams p = column("pbf");
+    p.sleep = {.on = true, .speed = 1, .after = 0.5F};
+    p.ellipsoids = true;
+    p.box.max.x = 1.0F;
+    p.blocks[0].velocity = vec3(0.0F);
+    p.blocks[0].max = vec3(1.0F, 0.1F, 0.3F);
+    const VoxelField paddle = test::baked(test::makeBox(vec3(-0.03F, -0.05F, -0.1F), vec3(0.03F, 0.05F, 0.1F)), 0.025F, kSpacing);
+    Pose pose{vec3(0.08F, 0.2F, 0.15F)};
+    auto world = make(device, p, {.rigid = {{&paddle, pose}}});
+    if (!world) return a;
+    for (int k = 0; k < 8; ++k) step(*world, {.poses = std::span(&pose, 1)}, 1.0 / 60);
+    const uint32_t before = world->stats().asleep;
+    pose.position.y -= 0.02F;
+    step(*world, {.poses = std::span(&pose, 1)}, 1.0 / 60);
+    const uint32_t after = world->stats().asleep;
+    EXPECT_GT(after, 0U);
+    EXPECT_LT(after, before);
+    addParticles(*world, a.exact);
+    addEllipsoids(*world, a.near);
+    a.exact.push_back(static_cast<float>(before));
+    a.exact.push_back(static_cast<float>(after));
     return a;
 }
 Answer wetness(Device& device) {

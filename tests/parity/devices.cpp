@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "engine/app/context_egl.h"
+#include "tests/expected_renderer.h"
 
 namespace rivulet {
 
@@ -21,6 +22,7 @@ Result<TestGpu> open(const std::string& name, const TestGpuOptions& options) {
     if (name == "gl") {
         Result<ContextEgl> context = ContextEgl::create();
         if (!context) return context.error();
+        expectRenderer(context->renderer());
         gpu.context = std::make_shared<ContextEgl>(std::move(*context));
         gpu.device = makeGlDevice(options.files, {}, options.gl);
         return gpu;

@@ -6,6 +6,7 @@
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/program.h"
 #include "tests/barriers.h"
+#include "tests/expected_renderer.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/opengl_test.h"
 
@@ -34,6 +35,7 @@ class Barriers : public rivulet::testing::OpenGlTest {
     void SetUp() override {
         OpenGlTest::SetUp();
         if (!context_) return;
+        expectRenderer(context_->renderer());
         files_.add("shaders/test/fill.comp", kFill);
         files_.add("shaders/test/add.comp", kAdd);
         files_.add("shaders/test/vertex.vert", kVertex);

@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "engine/core/file.h"
 #include "fluid/session/reference_data.h"
@@ -137,49 +139,68 @@ std::string dominating(const std::vector<GpuSpec>& gpus) {
     return page + "\n";
 }
 
-// What was measured on the devices here: rows of three tables.
+// What was measured on the devices here: cells of three tables, as the page has them. Predictions follow from these and from the counts.
+using Cells = std::vector<std::string>;
 struct DeviceTables {
-    std::string machine, rates, results, passes;
+    std::string machine;
+    std::vector<Cells> rates, results, passes;
 };
 constexpr const char* kErrorsHere = "## Error on the devices here";
 constexpr const char* kMeasuredOn = "Measured on: ";
+const std::vector<std::string> kRates = {
+    "device",       "bandwidth, GB/s",         "arithmetic, 1e9/s", "integers, 1e9/s",  "roots, 1e9/s",
+    "loads, 1e9/s", "rounds of a loop, 1e9/s", "dispatch, us",      "fragments, 1e9/s", "filtered reads, 1e9/s",
+    "texels, 1e9/s"};
+// Each of their rows goes on with the prediction and its error.
+const std::vector<std::string> kResults = {"device", "method", "particles", "substeps", "iterations", "measured"};
+const std::vector<std::string> kPasses = {"device", "method", "pass", "measured"};
+
+std::string lineOf(const Cells& cells) {
+    std::string line = "|";
+    for (const std::string& cell : cells) line += (cell.empty() ? "" : " ") + cell + " |";
+    return line + "\n";
+}
+Cells cellsOf(std::string_view line) {
+    Cells cells;
+    for (size_t at = 1, end = 0; (end = line.find('|', at)) != std::string_view::npos; at = end + 1) {
+        std::string_view cell = line.substr(at, end - at);
+        while (cell.starts_with(' ')) cell.remove_prefix(1);
+        while (cell.ends_with(' ')) cell.remove_suffix(1);
+        cells.emplace_back(cell);
+    }
+    return cells;
+}
+std::string predictedAndError(double predicted, double measured) {
+    return fmt::format(" {:.3g} | {} |\n", predicted, percent(errorOf(predicted, measured)));
+}
 
 DeviceTables tablesOf(const GpuModelRun& run) {
     DeviceTables t{.machine = machineName(), .rates = {}, .results = {}, .passes = {}};
+    const auto shown = [](double value) { return value > 0 ? fmt::format("{:.3g}", value) : std::string(); };
     for (const ExaminedGpu& g : run.gpus) {
-        t.rates += fmt::format("| {} ({}) |", g.name, backendName(g.device->backend()));
         const DeviceRates& r = g.rates;
+        t.rates.push_back({fmt::format("{} ({})", g.name, backendName(g.device->backend()))});
         for (const double each : {r.bandwidth / 1e9, r.arithmetic / 1e9, r.integer / 1e9, r.special / 1e9, r.loads / 1e9, r.rounds / 1e9,
                                   1000 * r.dispatchMs, r.fragments / 1e9, r.filtered / 1e9, r.fetches / 1e9})
-            t.rates += each > 0 ? fmt::format(" {:.3g} |", each) : std::string(" |");
-        t.rates += "\n";
+            t.rates.back().push_back(shown(each));
     }
     for (const SeriesRow& r : run.rows) {
-        t.results += fmt::format("| {} | {} | {} | {:.3g} | {:.3g} | {} |\n", r.device, r.method, r.particles, r.stepMs, r.predictedStepMs,
-                                 percent(errorOf(r.predictedStepMs, r.stepMs)));
-        if (r.drawMs > 0)
-            t.results += fmt::format("| {} | picture | {} | {:.3g} | {:.3g} | {} |\n", r.device, r.particles, r.drawMs, r.predictedDrawMs,
-                                     percent(errorOf(r.predictedDrawMs, r.drawMs)));
-    }
-    for (const SeriesRow& r : run.rows) {
+        const std::string particles = fmt::format("{}", r.particles);
+        t.results.push_back(
+            {r.device, r.method, particles, fmt::format("{:.4g}", r.substeps), fmt::format("{:.4g}", r.iterations), shown(r.stepMs)});
+        if (r.drawMs > 0) t.results.push_back({r.device, "picture", particles, "", "", shown(r.drawMs)});
         const bool largest = std::none_of(run.rows.begin(), run.rows.end(), [&](const SeriesRow& o) {
             return o.device == r.device && o.method == r.method && o.particles > r.particles;
         });
         if (!largest) continue;
-        const auto add = [&](const char* method, const std::map<std::string, double>& measured,
-                             const std::map<std::string, double>& predicted) {
+        const auto add = [&](const std::string& method, const std::map<std::string, double>& measured) {
             double whole = 0;
             for (const auto& [name, ms] : measured) whole += ms;
-            for (const auto& [name, ms] : measured) {
-                const auto found = predicted.find(name);
-                if (ms < 0.02 * whole) continue;
-                t.passes += fmt::format("| {} | {} | {} | {:.3g} |", r.device, method, name, ms);
-                t.passes += found == predicted.end() ? std::string(" | |\n")
-                                                     : fmt::format(" {:.3g} | {} |\n", found->second, percent(errorOf(found->second, ms)));
-            }
+            for (const auto& [name, ms] : measured)
+                if (ms >= 0.02 * whole) t.passes.push_back({r.device, method, name, shown(ms)});
         };
-        add(r.method.c_str(), r.passes, r.predictedPasses);
-        if (r.drawMs > 0) add("picture", r.drawPasses, r.predictedDrawPasses);
+        add(r.method, r.passes);
+        if (r.drawMs > 0) add("picture", r.drawPasses);
     }
     return t;
 }
@@ -191,38 +212,89 @@ Result<DeviceTables> tablesIn(const std::string& path) {
     const size_t from = page->find(kErrorsHere);
     std::istringstream lines(from == std::string::npos ? "" : page->substr(from, page->find("\n## ", from) - from));
     DeviceTables t;
-    std::string* const tables[] = {&t.rates, &t.results, &t.passes};
+    const std::pair<std::vector<Cells>*, const std::vector<std::string>*> tables[] = {
+        {&t.rates, &kRates}, {&t.results, &kResults}, {&t.passes, &kPasses}};
     size_t table = 0, inTable = 0;
+    bool whole = true;
     for (std::string line; std::getline(lines, line);) {
         if (line.starts_with(kMeasuredOn)) t.machine = line.substr(std::string_view(kMeasuredOn).size());
         if (!line.starts_with("|")) {
             if (inTable > 0) ++table;
             inTable = 0;
-        } else if (++inTable > 2 && table < std::size(tables)) {
-            *tables[table] += line + "\n";
+            continue;
         }
+        if (table == std::size(tables)) break;
+        const auto& [rows, columns] = tables[table];
+        Cells cells = cellsOf(line);
+        whole = whole && cells.size() >= columns->size();
+        cells.resize(columns->size());
+        if (++inTable == 1) whole = whole && cells == *columns;
+        if (inTable > 2) rows->push_back(std::move(cells));
     }
-    if (t.machine.empty() || t.rates.empty() || t.results.empty() || t.passes.empty())
+    if (!whole || t.machine.empty() || t.rates.empty() || t.results.empty() || t.passes.empty())
         return badInput(fmt::format("{} has no tables of measured devices to keep; measure them: bench gpu_model without --quick", path));
     return t;
 }
 
+// A device of the table of rates, which names it with its backend: "llvmpipe (...) (gl)".
+GpuSpec deviceIn(const DeviceTables& t, const std::string& backend) {
+    for (const Cells& row : t.rates) {
+        if (!row[0].ends_with("(" + backend + ")")) continue;
+        const auto giga = [&](size_t column) { return 1.0e9 * numberIn(row[column]); };
+        const DeviceRates rates{.bandwidth = giga(1),
+                                .arithmetic = giga(2),
+                                .integer = giga(3),
+                                .special = giga(4),
+                                .loads = giga(5),
+                                .rounds = giga(6),
+                                .dispatchMs = numberIn(row[7]) / 1000,
+                                .fragments = giga(8),
+                                .filtered = giga(9),
+                                .fetches = giga(10)};
+        return measuredGpu(row[0], rates, threadsInStep(backend));
+    }
+    return {};
+}
+
 std::string errorsHere(const DeviceTables& t) {
-    return fmt::format(
-               "{}\n\nThe devices of the machine that measured for this page are software: llvmpipe (OpenGL, `gl`) and PoCL (OpenCL, "
-               "`cl`). "
-               "Tiny kernels (`shaders/bench`) measured their rates; the model was not fitted to the frames. Times are processor time over "
-               "the "
-               "number of threads: ms of a substep, or of a picture. The error is the predicted time over the measured one, less "
-               "1.\n\n{}{}\n\n",
-               kErrorsHere, kMeasuredOn, t.machine) +
-           headOf({"device", "bandwidth, GB/s", "arithmetic, 1e9/s", "integers, 1e9/s", "roots, 1e9/s", "loads, 1e9/s",
-                   "rounds of a loop, 1e9/s", "dispatch, us", "fragments, 1e9/s", "filtered reads, 1e9/s", "texels, 1e9/s"}) +
-           t.rates + "\n" + headOf({"device", "method", "particles", "measured", "predicted", "error"}) + t.results +
-           "\nBy pass: ms of a substep, or of a picture. The measured time of a pass is its share of the time on the wall, times the "
-           "substep's "
-           "or the picture's processor time. Passes of less than 2 % are left out.\n\n" +
-           headOf({"device", "method", "pass", "measured", "predicted", "error"}) + t.passes + "\n";
+    const auto with = [](std::vector<std::string> columns) {
+        columns.insert(columns.end(), {"predicted", "error"});
+        return headOf(columns);
+    };
+    std::string page = fmt::format(
+        "{}\n\nThe devices of the machine that measured for this page are software: llvmpipe (OpenGL, `gl`) and PoCL (OpenCL, `cl`). Tiny "
+        "kernels (`shaders/bench`) measured their rates; the model was not fitted to the frames. Times are processor time over the number "
+        "of threads: ms of a substep, or of a picture. Substeps: of a step as it was asked for; iterations: of the pressure solver, in a "
+        "substep; both as measured. The prediction follows from these, from the rates and from the counts. The error is the predicted time "
+        "over the measured one, less 1.\n\n{}{}\n\n{}",
+        kErrorsHere, kMeasuredOn, t.machine, headOf(kRates));
+    for (const Cells& row : t.rates) page += lineOf(row);
+    page += "\n" + with(kResults);
+    std::map<std::string, FrameCost> costs;  // of a device and method: of its substep, or picture
+    for (const Cells& row : t.results) {
+        const GpuSpec gpu = deviceIn(t, row[0]);
+        const double particles = numberIn(row[2]), substeps = numberIn(row[3]);
+        FrameCost cost =
+            row[1] == "picture" ? predictPicture(gpu, particles) : predictSteps(gpu, row[1], particles, {substeps, numberIn(row[4])});
+        if (row[1] != "picture")
+            for (PassCost& pass : cost.passes) pass.ms /= substeps;
+        std::string line = lineOf(row);
+        line.pop_back();
+        page += line + predictedAndError(cost.ms(), numberIn(row[5]));
+        costs[row[0] + " " + row[1]] = std::move(cost);
+    }
+    page +=
+        "\nBy pass: ms of a substep, or of a picture. The measured time of a pass is its share of the time on the wall, times the "
+        "substep's or the picture's processor time. Passes of less than 2 % are left out.\n\n" +
+        with(kPasses);
+    for (const Cells& row : t.passes) {
+        std::string line = lineOf(row), rest = " | |\n";
+        line.pop_back();
+        for (const PassCost& pass : costs[row[0] + " " + row[1]].passes)
+            if (pass.name == row[2]) rest = predictedAndError(pass.ms, numberIn(row[3]));
+        page += line + rest;
+    }
+    return page + "\n";
 }
 
 std::string errorsThere(const std::vector<GpuSpec>& gpus) {

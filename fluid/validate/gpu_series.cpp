@@ -52,14 +52,15 @@ Status drawSeries(const ExaminedGpu& gpu, const FluidWorld& world, SceneRenderer
 
 }  // namespace
 
+int threadsInStep(std::string_view backend) { return backend == "gl" ? 8 : 1; }
+
 Result<ExaminedGpu> examineGpu(Device& device, const std::string& name) {
     ExaminedGpu e{.device = &device, .name = name};
     const Result<DeviceRates> rates = measureRates(device);
     if (!rates) return rates.error();
     e.rates = *rates;
     if (device.info().software) {
-        // Mesa's llvmpipe runs 8 threads in step (vectors of 256 bits), PoCL one after the other.
-        e.model = measuredGpu(name, *rates, device.backend() == Backend::gl ? 8 : 1);
+        e.model = measuredGpu(name, *rates, threadsInStep(backendName(device.backend())));
         e.from = "its own measured rates";
     } else {
         const NearestGpu nearest = nearestGpu(name, rates->bandwidth);
@@ -115,10 +116,10 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
     if (device.info().software) scaleTo(row.stepMs, row.passes);
     row.iterations = iterations / steps;
     if (Status sound = stillWorks(device); !sound) return sound.error();
-    const double substeps = static_cast<double>(steps) / calls;
-    const FrameCost step = predictSteps(gpu.model, method, row.particles, {substeps, row.iterations});
-    row.predictedStepMs = step.ms() / substeps;
-    for (const PassCost& pass : step.passes) row.predictedPasses[pass.name] = pass.ms / substeps;
+    row.substeps = static_cast<double>(steps) / calls;
+    const FrameCost step = predictSteps(gpu.model, method, row.particles, {row.substeps, row.iterations});
+    row.predictedStepMs = step.ms() / row.substeps;
+    for (const PassCost& pass : step.passes) row.predictedPasses[pass.name] = pass.ms / row.substeps;
     // The frame: as many substeps, each with as many iterations, as a run on the cpu has. The share of iterations is the model's.
     row.predictedFrameMs = predictSteps(gpu.model, method, row.particles, work).ms();
     row.frameMs = row.predictedStepMs > 0 ? row.stepMs / row.predictedStepMs * row.predictedFrameMs : 0;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "fluid/session/scene_renderer.h"
 #include "fluid/validate/gpu_cost.h"
@@ -19,6 +20,8 @@ struct ExaminedGpu {
     GpuSpec model = {};
     std::string from = {};  // "RTX 3060, by its name"; a device that is software: "its own measured rates"
 };
+// Threads that a device that is software runs in step: Mesa's llvmpipe ("gl") 8, vectors of 256 bits; PoCL ("cl") one after the other.
+int threadsInStep(std::string_view backend);
 // `name`: of the renderer or the OpenCL device. Error: as measureRates().
 Result<ExaminedGpu> examineGpu(Device& device, const std::string& name);
 
@@ -29,6 +32,7 @@ struct SeriesRow {
     int particles = 0;
     double stepMs = 0, predictedStepMs = 0;                                   // of a substep
     double frameMs = 0, predictedFrameMs = 0;                                 // of 1/60 s, with the substeps and iterations of frames.csv
+    double substeps = 0;                                                      // of a step as it was asked for
     double iterations = 0;                                                    // of the pressure solver, in a substep
     int warmSteps = 0;                                                        // before those that are measured: 8, if there is time
     double drawMs = 0, predictedDrawMs = 0;                                   // of a picture; 0: not drawn

@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "fluid/session/reference_data.h"
 #include "fluid/validate/gpu_cost.h"
+#include "fluid/validate/gpu_series.h"
 
 namespace rivulet::gpu_cost_test {
 namespace {
@@ -204,17 +206,49 @@ double errorOf(const std::vector<std::string>& row) {
     return error;
 }
 
-TEST(GpuCostPage, ErrorsAreThoseOfItsFiguresAndBelowThirtyPercentOnTheDevicesHere) {
+// The device of a backend, by the rates on the page.
+GpuSpec deviceHere(const std::string& backend) {
+    for (const auto& row : cellsUnder("Error on the devices here"))
+        if (row.size() == 11 && row[0].ends_with("(" + backend + ")")) {
+            const auto giga = [&](size_t column) { return 1.0e9 * numberOf(row[column]); };
+            DeviceRates rates{giga(1), giga(2), giga(3), giga(4), giga(5), giga(6)};
+            rates.dispatchMs = numberOf(row[7]) / 1000;
+            rates.fragments = giga(8);
+            rates.filtered = giga(9);
+            rates.fetches = giga(10);
+            return measuredGpu(row[0], rates, threadsInStep(backend));
+        }
+    ADD_FAILURE() << "no rates of " << backend;
+    return {};
+}
+
+// The prediction is what the model says now, of the rates and measured steps on the page: bench gpu_model --quick writes it anew.
+TEST(GpuCostPage, ErrorsAreThoseOfTheModelAndBelowThirtyPercentOnTheDevicesHere) {
+    std::map<std::string, FrameCost> costs;  // of a device and method: of a substep, or picture
     size_t results = 0, passes = 0;
     for (const auto& row : cellsUnder("Error on the devices here")) {
-        if (row.size() != 6 || row.back().find('%') == std::string::npos) continue;
-        const double error = errorOf(row);
-        if (numberOf(row[2]) > 0) {  // particles: of a whole substep or picture. Else a pass
-            EXPECT_LE(std::abs(error), 30) << row[0] << " " << row[1];
+        const bool result = row.size() == 8, pass = row.size() == 6;
+        if ((!result && !pass) || row.back().find('%') == std::string::npos) continue;
+        const std::string of = row[0] + " " + row[1];
+        const double error = errorOf(row), predicted = numberOf(row[row.size() - 2]);
+        double model = 0;
+        if (result) {  // the results come before their passes
+            const double substeps = row[1] == "picture" ? 1 : numberOf(row[3]);
+            ASSERT_GE(substeps, 1) << of;
+            const GpuSpec gpu = deviceHere(row[0]);
+            FrameCost& cost = costs[of];
+            cost = row[1] == "picture" ? predictPicture(gpu, numberOf(row[2]))
+                                       : predictSteps(gpu, row[1], numberOf(row[2]), {substeps, numberOf(row[4])});
+            for (PassCost& each : cost.passes) each.ms /= substeps;
+            model = cost.ms();
+            EXPECT_LE(std::abs(error), 30) << of;
             ++results;
         } else {
+            for (const PassCost& each : costs[of].passes)
+                if (each.name == row[2]) model = each.ms;
             ++passes;
         }
+        EXPECT_NEAR(predicted, model, 0.01 * model) << of << " " << row[2];
     }
     EXPECT_EQ(results, 7U);
     EXPECT_GT(passes, 20U);

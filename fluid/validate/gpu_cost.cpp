@@ -220,7 +220,9 @@ std::vector<GpuSpec> publishedGpus() {
         g.loadLatency = number("load_cycles") / clock;
         g.resident = number("threads") * units;
         g.pixels = number("rops") * clock;
-        g.texels = number("tmus") * clock;
+        g.units = units;
+        g.drawUnits = number("draw_units");
+        g.texels = number("tmus") * clock * g.drawShare();
         all.push_back(std::move(g));
     }
     return all;
@@ -301,18 +303,19 @@ FrameCost predictPicture(const GpuSpec& gpu, double particles) {
         for (const auto& [of, kind] : {std::pair("operations", GpuOp::arithmetic), std::pair("special", GpuOp::special)}) {
             const double each = fragments * number(of) + vertices * number(("vertex_" + std::string(of)).c_str());
             operations += each;
-            computing += each * gpu.seconds[static_cast<size_t>(kind)];
+            computing += each * gpu.seconds[static_cast<size_t>(kind)] / gpu.drawShare();
         }
         const double fetches = fragments * number("fetches") + vertices * number("vertex_fetches");
         const double reads = fragments * number("reads") + vertices * number("vertex_reads");  // fetches among them
         const double inTurn = fragments * gpu.fragmentSeconds + (reads - fetches) * gpu.filteredSeconds + fetches * gpu.fetchSeconds;
         const double bytes = number("read_bytes") + number("written_bytes");
+        const double cached = gpu.cache > 0 ? number("read_bytes") / (gpu.cache * gpu.drawShare()) : 0;
         const struct {
             double seconds;
             const char* bound;
         } limits[] = {
             {computing + inTurn, "operations"},
-            {gpu.texels > 0 ? reads / gpu.texels : 0, "cache"},
+            {std::max(gpu.texels > 0 ? reads / gpu.texels : 0, cached), "cache"},
             {bytes / gpu.bandwidth, "memory"},
             {gpu.pixels > 0 ? fragments / gpu.pixels : 0, "pixels"},
         };

@@ -30,8 +30,10 @@ struct GpuSpec {
     double operationLatency = 0;            // s, from an operation to one that needs its result; 0: the longest thread is no limit
     double loadLatency = 0;                 // s, the first cache
     double resident = 0;                    // threads that it holds at full occupancy
+    double units = 1, drawUnits = 1;        // SM, CU or Xe core; those of them that can run drawing shaders
     double pixels = 0;                      // fragments/s that it can write; 0: not a limit
-    double texels = 0;                      // texture reads/s; 0: not a limit
+    double texels = 0;                      // texture reads/s of the units that draw; 0: not a limit
+    double drawShare() const { return drawUnits / units; }
     // Of a device that is software, which does all of this one after the other, s: a fragment that is written, a filtered read of a
     // texture, a texel that is fetched. 0: not counted.
     double fragmentSeconds = 0, filteredSeconds = 0, fetchSeconds = 0;

@@ -87,6 +87,29 @@ TEST(GpuCost, FasterGpusAreFasterAndMoreParticlesCostMore) {
     EXPECT_GT(predictPicture(all.front(), 1.0e6).ms(), predictPicture(all.front(), 1.0e5).ms());
 }
 
+// What draws is a part of the GPU: it has that part of the operations, texels and first caches.
+TEST(GpuCost, AGpuDrawsWithTheUnitsThatCan) {
+    for (const GpuSpec& gpu : publishedGpus()) {
+        const bool few = gpu.name == "H100 80GB" || gpu.name == "H200";
+        EXPECT_EQ(gpu.drawUnits, few ? 4 : gpu.units) << gpu.name;
+        if (gpu.name == "H200") EXPECT_DOUBLE_EQ(gpu.texels, 16 * 1980.0e6);
+    }
+    GpuSpec gpu = publishedGpus().front();
+    gpu.launch = 0;
+    gpu.pixels = gpu.texels = gpu.cache = 0;
+    gpu.bandwidth = 1.0e30;
+    const double computing = predictPicture(gpu, 1.0e5).ms(), steps = frameMs(gpu, "pbf", 1.0e5);
+    gpu.drawUnits = 0.25 * gpu.units;
+    EXPECT_NEAR(predictPicture(gpu, 1.0e5).ms() / computing, 4, 1.0e-6);
+    EXPECT_EQ(frameMs(gpu, "pbf", 1.0e5), steps);
+    for (double& s : gpu.seconds) s = 0;
+    gpu.cache = 1.0e9;
+    const double reading = predictPicture(gpu, 1.0e5).ms();
+    EXPECT_GT(reading, 100);
+    gpu.drawUnits = 0.125 * gpu.units;
+    EXPECT_NEAR(predictPicture(gpu, 1.0e5).ms() / reading, 2, 1.0e-6);
+}
+
 // A device that is software writes fragments and reads textures one after the other: what each takes adds up.
 TEST(GpuCost, APictureInSoftwareTakesItsFragmentsAndItsReads) {
     GpuSpec none;
@@ -256,18 +279,27 @@ TEST(GpuCostPage, ErrorsAreThoseOfTheModelAndBelowThirtyPercentOnTheDevicesHere)
 
 TEST(GpuCostPage, ItsSentencesCarryTheErrorAgainstAGpu) {
     double least = 1.0e9, most = -1.0e9;
-    for (const auto& row : cellsUnder("Against a GPU"))
-        if (row.size() == 7 && row.back().find('%') != std::string::npos) {
-            const double error = errorOf(row);
+    std::string predicted, measured;  // of whole pictures
+    for (const auto& row : cellsUnder("Against a GPU")) {
+        if (row.back().find('%') == std::string::npos) continue;
+        const double error = errorOf(row);
+        if (row.size() == 7) {
             least = std::min(least, error);
             most = std::max(most, error);
+        } else if (row[2] == "picture") {
+            measured += (measured.empty() ? "" : " and ") + row[3];
+            predicted += (predicted.empty() ? "" : " and ") + row[4];
         }
+    }
     EXPECT_LT(least, most);
+    EXPECT_FALSE(measured.empty());
     std::ifstream page(RIVULET_SOURCE_DIR "/docs/gpus.md");
     size_t sentences = 0;
     for (std::string line; std::getline(page, line);)
         if (line.starts_with("RTX 3060: a frame of a million") || line.starts_with("RX 6800: a frame of a million")) {
             EXPECT_NE(line.find(fmt::format("off by {:+.0f} % to {:+.0f} %", least, most)), std::string::npos) << line;
+            EXPECT_NE(line.find(fmt::format("pictures predicted to take {} ms took {} ms", predicted, measured)), std::string::npos)
+                << line;
             ++sentences;
         }
     EXPECT_EQ(sentences, 2U);

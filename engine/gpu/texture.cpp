@@ -162,8 +162,8 @@ Result<Texture> Texture::create(const TextureDesc& asked) {
     else
         glTextureStorage2D(name, desc.mips, format.internal, desc.width, desc.height);
     if (const GLenum error = takeGlError(); error != GL_NO_ERROR)
-        return failed(fmt::format("the GPU is out of memory: cannot allocate {} ({:.1f} MiB; {}); use a smaller image", what,
-                                  static_cast<double>(desc.bytes()) / 1048576.0, glErrorName(error)));
+        return noMemory(fmt::format("the GPU is out of memory: cannot allocate {} ({:.1f} MiB; {}); use a smaller image", what,
+                                    static_cast<double>(desc.bytes()) / 1048576.0, glErrorName(error)));
     const Filter filter = format.depth || format.integer ? Filter::nearest : Filter::linear;
     texture.setSampling({.min = filter, .mag = filter, .mip = filter});
     return texture;

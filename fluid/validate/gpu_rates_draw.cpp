@@ -2,6 +2,7 @@
 #include <array>
 #include <string>
 
+#include "engine/core/timeline.h"
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/program.h"
 #include "fluid/validate/gpu_rates.h"
@@ -10,7 +11,8 @@ namespace rivulet {
 
 namespace {
 
-constexpr int kDraws = 7;  // the fastest counts: other work on the machine only adds time
+constexpr int kDraws = 7;           // the fastest counts: other work on the machine only adds time
+constexpr int kLeastTarget = 1024;  // pixels: where memory does not suffice, targets are halved down to this
 constexpr int kPassesEach = 4;
 constexpr int kFewReads = 8, kManyReads = 16;
 
@@ -26,14 +28,14 @@ struct Draw {
         if (!made) return made.error();
         return Draw{std::move(*made), filtered ? gpu::Format::rgba16f : gpu::Format::r32f};
     }
-    // s for a fragment; `size`: of the target's edge.
-    Result<double> seconds(Device& device, gpu::TransientPool& pool, int size) {
+    // s for a fragment; `size`: of the target's edge. Past `until` it is drawn only once more.
+    Result<double> seconds(Device& device, gpu::TransientPool& pool, int size, double until) {
         gpu::TextureDesc desc{.width = size, .height = size, .format = source};
         Result<gpu::Texture> from = gpu::Texture::create(desc);
         if (!from) return from.error();
         from->clear(vec4(1.0F));
         double least = 1.0e9;
-        for (int run = 0; run <= kDraws; ++run) {  // the first warms up
+        for (int run = 0; run <= kDraws && (run < 2 || hostSeconds() < until); ++run) {  // the first warms up
             gpu::FrameGraph graph(pool);
             const gpu::TextureHandle read = graph.importTexture("source", *from);
             const gpu::TextureHandle to = graph.texture("target", {.width = size, .height = size, .format = gpu::Format::rgba16f});
@@ -57,26 +59,32 @@ struct Draw {
 
 }  // namespace
 
-Status measureDrawing(Device& device, DeviceRates& rates) {
-    const int size = device.info().software ? 1024 : 4096;
-    gpu::TransientPool pool;
+Result<bool> measureDrawing(Device& device, DeviceRates& rates, double until) {
+    int size = device.info().software ? kLeastTarget : 4096;
     const auto timed = [&](int reads, bool filtered) -> Result<double> {
         Result<Draw> draw = Draw::create(reads, filtered);
         if (!draw) return draw.error();
-        return draw->seconds(device, pool, size);
+        for (;; size /= 2) {
+            gpu::TransientPool pool;
+            Result<double> seconds = draw->seconds(device, pool, size, until);
+            if (seconds || !seconds.error().memory || size <= kLeastTarget) return seconds;
+        }
     };
     const Result<double> plain = timed(0, true);
     if (!plain) return plain.error();
     rates.fragments = 1 / *plain;
     for (const bool filtered : {true, false}) {
-        const Result<double> few = timed(kFewReads, filtered), many = timed(kManyReads, filtered);
+        if (hostSeconds() >= until) return false;
+        const Result<double> few = timed(kFewReads, filtered);
         if (!few) return few.error();
+        if (hostSeconds() >= until) return false;
+        const Result<double> many = timed(kManyReads, filtered);
         if (!many) return many.error();
         // Other work on the machine may hide the difference.
         const double read = std::max((*many - *few) / (kManyReads - kFewReads), 0.1 * *many / kManyReads);
         (filtered ? rates.filtered : rates.fetches) = 1 / read;
     }
-    return ok();
+    return true;
 }
 
 }  // namespace rivulet

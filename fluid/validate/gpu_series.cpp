@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include "engine/core/timeline.h"
@@ -44,6 +45,7 @@ Status drawSeries(const ExaminedGpu& gpu, const FluidWorld& world, SceneRenderer
         }
     }
     if (gpu.device->info().software) scaleTo(row.drawMs, row.drawPasses);
+    if (gpu.from.empty()) return ok();
     const FrameCost cost = predictPicture(gpu.model, row.particles);
     row.predictedDrawMs = cost.ms();
     for (const PassCost& pass : cost.passes) row.predictedDrawPasses[pass.name] = pass.ms;
@@ -54,16 +56,26 @@ Status drawSeries(const ExaminedGpu& gpu, const FluidWorld& world, SceneRenderer
 
 int threadsInStep(std::string_view backend) { return backend == "gl" ? 8 : 1; }
 
-Result<ExaminedGpu> examineGpu(Device& device, const std::string& name) {
+ExaminedGpu namedGpu(Device& device, const std::string& name) {
     ExaminedGpu e{.device = &device, .name = name};
-    const Result<DeviceRates> rates = measureRates(device);
+    if (device.info().software) return e;
+    if (const NearestGpu named = nearestGpu(name, 0); named.byName) {
+        e.model = named.gpu;
+        e.from = fmt::format("{}, by its name", named.gpu.name);
+    }
+    return e;
+}
+
+Result<ExaminedGpu> examineGpu(Device& device, const std::string& name, double until) {
+    const Result<std::optional<DeviceRates>> rates = measureRates(device, until);
     if (!rates) return rates.error();
-    e.rates = *rates;
+    if (!*rates) return namedGpu(device, name);
+    ExaminedGpu e{.device = &device, .name = name, .measured = true, .rates = **rates};
     if (device.info().software) {
-        e.model = measuredGpu(name, *rates, threadsInStep(backendName(device.backend())));
+        e.model = measuredGpu(name, e.rates, threadsInStep(backendName(device.backend())));
         e.from = "its own measured rates";
     } else {
-        const NearestGpu nearest = nearestGpu(name, rates->bandwidth);
+        const NearestGpu nearest = nearestGpu(name, e.rates.bandwidth);
         e.model = nearest.gpu;
         e.from = fmt::format("{}, {}", nearest.gpu.name, nearest.byName ? "by its name" : "the nearest in bandwidth");
     }
@@ -117,12 +129,14 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
     row.iterations = iterations / steps;
     if (Status sound = stillWorks(device); !sound) return sound.error();
     row.substeps = static_cast<double>(steps) / calls;
-    const FrameCost step = predictSteps(gpu.model, method, row.particles, {row.substeps, row.iterations});
-    row.predictedStepMs = step.ms() / row.substeps;
-    for (const PassCost& pass : step.passes) row.predictedPasses[pass.name] = pass.ms / row.substeps;
-    // The frame: as many substeps, each with as many iterations, as a run on the cpu has. The share of iterations is the model's.
-    row.predictedFrameMs = predictSteps(gpu.model, method, row.particles, work).ms();
-    row.frameMs = row.predictedStepMs > 0 ? row.stepMs / row.predictedStepMs * row.predictedFrameMs : 0;
+    if (!gpu.from.empty()) {
+        const FrameCost step = predictSteps(gpu.model, method, row.particles, {row.substeps, row.iterations});
+        row.predictedStepMs = step.ms() / row.substeps;
+        for (const PassCost& pass : step.passes) row.predictedPasses[pass.name] = pass.ms / row.substeps;
+        // The frame: as many substeps, each with as many iterations, as a run on the cpu has. The share of iterations is the model's.
+        row.predictedFrameMs = predictSteps(gpu.model, method, row.particles, work).ms();
+        row.frameMs = row.predictedStepMs > 0 ? row.stepMs / row.predictedStepMs * row.predictedFrameMs : 0;
+    }
     if (renderer != nullptr && hostSeconds() < until)
         if (Status drawn = drawSeries(gpu, world, *renderer, damBreak, until, row); !drawn) return drawn.error();
     return row;

@@ -16,21 +16,25 @@ constexpr int kSeriesWidth = 1920, kSeriesHeight = 1080;  // pixels of a picture
 struct ExaminedGpu {
     Device* device = nullptr;
     std::string name;
+    bool measured = false;  // its rates
     DeviceRates rates = {};
     GpuSpec model = {};
-    std::string from = {};  // "RTX 3060, by its name"; a device that is software: "its own measured rates"
+    std::string from = {};  // "RTX 3060, by its name"; a device that is software: "its own measured rates"; empty: there is no model
 };
 // Threads that a device that is software runs in step: Mesa's llvmpipe ("gl") 8, vectors of 256 bits; PoCL ("cl") one after the other.
 int threadsInStep(std::string_view backend);
-// `name`: of the renderer or the OpenCL device. Error: as measureRates().
-Result<ExaminedGpu> examineGpu(Device& device, const std::string& name);
+// `name`: of the renderer or the OpenCL device. As namedGpu() if hostSeconds() passes `until` before its rates are measured. Error: as
+// measureRates().
+Result<ExaminedGpu> examineGpu(Device& device, const std::string& name, double until = 1.0e300);
+// Without measured rates: a GPU has a model if its name is that of a published one.
+ExaminedGpu namedGpu(Device& device, const std::string& name);
 
 // All times are ms: on a GPU of the wall, with a wait at the end. A device that is software: processor time over the number of threads,
 // which other programs on the machine hardly change.
 struct SeriesRow {
     std::string device, method;  // "gl", "pbf"
     int particles = 0;
-    double stepMs = 0, predictedStepMs = 0;                                   // of a substep
+    double stepMs = 0, predictedStepMs = 0;                                   // of a substep; predictions are 0 without a model
     double frameMs = 0, predictedFrameMs = 0;                                 // of 1/60 s, with the substeps and iterations of frames.csv
     double substeps = 0;                                                      // of a step as it was asked for
     double iterations = 0;                                                    // of the pressure solver, in a substep

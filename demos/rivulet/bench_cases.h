@@ -38,6 +38,7 @@ struct BenchCase {
     const char* name;
     const char* doc;
     Status (*run)(const BenchContext& context);
+    const char* options;  // those of its own: "--runs --out"
 };
 Table<BenchCase> benchCases();
 

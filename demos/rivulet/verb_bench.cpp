@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 #include <json/json.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <span>
+#include <string_view>
+#include <utility>
 
 #include "demos/rivulet/bench_cases.h"
 #include "demos/rivulet/cli.h"
@@ -57,6 +61,26 @@ std::string markdownOf(const Json::Value& all) {
     return page;
 }
 
+bool reads(const BenchCase& row, std::string_view option) {
+    return fmt::format(" {} ", row.options).find(fmt::format(" {} ", option)) != std::string::npos;
+}
+
+// The cases that read an option, for its help text.
+std::string readersOf(std::string_view option) {
+    std::string names;
+    for (const BenchCase& row : benchCases().rows)
+        if (reads(row, option)) names += fmt::format("{}{}", names.empty() ? "" : ", ", row.name);
+    return names;
+}
+
+// Error (badInput): none of the cases reads `option`.
+Status checkRead(std::span<const BenchCase* const> cases, std::string_view option) {
+    if (std::ranges::any_of(cases, [option](const BenchCase* row) { return reads(*row, option); })) return ok();
+    std::string names;
+    for (const BenchCase* row : cases) names += fmt::format("{}{}", names.empty() ? "" : ", ", row->name);
+    return badInput(fmt::format("{} has no effect on {}; leave it out, or add one of: {}", option, names, readersOf(option)));
+}
+
 }  // namespace
 
 int benchVerb(const Arguments& arguments) {
@@ -70,13 +94,13 @@ int benchVerb(const Arguments& arguments) {
     reader.positional("CASE", "cases to measure; default: all", names);
     reader.option("--json", "FILE.json", "also write the results as JSON", jsonFile);
     reader.option("--markdown", "FILE.md", "also write the results as a Markdown page, like docs/performance.md", markdownFile);
-    reader.option("--out", "DIR", "output folder of the pages that chapter2 and chapter4 write; without it they write none", out);
+    reader.option("--out", "DIR", fmt::format("output folder of the pages of {}; without it they write none", readersOf("--out")), out);
     bool quick = false;
     std::optional<double> seconds;
     reader.flag("--quick", "gpu: one device and the smallest sizes only; gpu_model: no measurements, the page keeps those that it has",
                 quick);
     reader.option("--seconds", "S", "gpu: leaves out what takes longer than about this; default: 90", seconds, 1, 3600);
-    reader.option("--runs", "N", "measured runs of each case; default: 5", runs, 5, 1000);
+    reader.option("--runs", "N", fmt::format("measured runs of each row of {}; default: 5", readersOf("--runs")), runs, 5, 1000);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
     std::vector<const BenchCase*> cases;
@@ -86,10 +110,18 @@ int benchVerb(const Arguments& arguments) {
         if (Status known = checkWord("bench case", name, benchCases().names()); !known) return report(known.error());
         cases.push_back(benchCases().find(name));
     }
+    for (const auto& [option, used] : {std::pair("--out", !out.empty()), std::pair("--quick", quick),
+                                       std::pair("--seconds", seconds.has_value()), std::pair("--runs", runs.has_value())})
+        if (used)
+            if (Status read = checkRead(cases, option); !read) return report(read.error());
 
     const auto inOut = [&](const char* names) { return out.empty() ? "" : (std::filesystem::path(out) / names).string(); };
-    const NamedFile outputs[] = {
-        {"--json", jsonFile}, {"--markdown", markdownFile}, {"--out", inOut("chapter2.*"), true}, {"--out", inOut("chapter4.*"), true}};
+    const NamedFile outputs[] = {{"--json", jsonFile},
+                                 {"--markdown", markdownFile},
+                                 {"--out", inOut("chapter2.*"), true},
+                                 {"--out", inOut("chapter4.*"), true},
+                                 {"--out", inOut("gpus.md")},
+                                 {"--out", inOut("gpus.csv")}};
     if (Status apart = checkOutputs(outputs, {}); !apart) return report(apart.error());
     for (const std::string& file : {jsonFile, markdownFile})
         if (!file.empty())

@@ -1,4 +1,5 @@
 // `rivulet bench gpu`: compares the devices with the cpu, measures, and says so in JSON; a kernel that is wrong ends it with exit status 1.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <json/json.h>
 
@@ -163,7 +164,23 @@ TEST(ProgramGpu, BadArgumentsAreRefused) {
     expectRefusal(runProgram({"bench", "gpus"}), 2, "did you mean 'gpu'");
     expectRefusal(runProgram({"bench", "gpu", "--quik"}), 2, "did you mean '--quick'");
     expectRefusal(runProgram({"bench", "gpu", "--json", "/no_such_folder/gpu.json"}), 1, "/no_such_folder");
-    EXPECT_NE(runProgram({"bench", "--help"}).out.find("\n  gpu "), std::string::npos);
+    const std::string help = runProgram({"bench", "--help"}).out;
+    EXPECT_NE(help.find("\n  gpu "), std::string::npos);
+    EXPECT_NE(help.find("gpu_model, chapter2"), std::string::npos) << "which cases write pages with --out";
+    // Options that do nothing there.
+    const Scratch scratch;
+    const std::string out = (scratch.path() / "pages").string();
+    expectRefusal(runProgram({"bench", "gpu", "--out", out}), 2, "--out has no effect on gpu; leave it out");
+    expectRefusal(runProgram({"bench", "gpu", "gpu_model", "--runs", "7"}), 2, "--runs has no effect on gpu, gpu_model; leave it out");
+    expectRefusal(runProgram({"bench", "voxels", "--quick"}), 2, "--quick has no effect on voxels; leave it out");
+    expectRefusal(runProgram({"bench", "voxels", "--seconds", "5"}), 2, "--seconds has no effect on voxels; leave it out");
+    EXPECT_FALSE(std::filesystem::exists(out));
+    // The pages of gpu_model are files of --out.
+    for (const char* page : {"gpus.md", "gpus.csv"})
+        for (const char* option : {"--json", "--markdown"})
+            expectRefusal(
+                runProgram({"bench", "gpu_model", "--quick", "--out", scratch.path().string(), option, (scratch.path() / page).string()}),
+                2, fmt::format("{} and --out would both write ", option));
 }
 
 }  // namespace

@@ -13,8 +13,10 @@
 #include <map>
 #include <thread>
 
+#include "engine/app/gl_count.h"
 #include "engine/core/extension_list.h"
 #include "engine/gpu/current_context.h"
+#include "engine/gpu/load.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/cpu_fallback.h"
 #include "fluid/session/run_stats.h"
@@ -33,6 +35,10 @@ struct Played {
     std::map<cl_mem, GLuint> wrapped;
     std::map<cl_mem, int> acquired;  // number of times
     int calls = 0, acquires = 0, releases = 0, live = 0, outlived = 0;
+    bool counts = false;                                // OpenGL's commands are counted (countingFind)
+    int finishes = 0;                                   // of OpenGL, by GlContext::finish
+    size_t finishedAfter = SIZE_MAX;                    // OpenGL's commands up to the last of these, itself included
+    int inOrder = 0;                                    // acquires with no command of OpenGL since the last finish
     size_t together = 0;                                // of the last acquire
     int failFrom = 1 << 30;                             // the acquire that fails, and all after it
     std::thread::id home = std::this_thread::get_id();  // where OpenGL is
@@ -95,6 +101,7 @@ cl_int CL_API_CALL acquire(cl_command_queue queue, cl_uint count, const cl_mem* 
     ++played.calls;
     if (played.lie == Lie::noAcquire || played.acquires >= played.failFrom) return CL_OUT_OF_RESOURCES;
     ++played.acquires;
+    if (played.counts && glCount().all() == played.finishedAfter) ++played.inOrder;
     played.together = count;
     for (cl_uint k = 0; k < count; ++k) {
         const bool brings = played.lie != Lie::blind && (played.lie != Lie::once || played.acquired[all[k]] == 0);
@@ -122,6 +129,13 @@ cl_int CL_API_CALL release(cl_command_queue queue, cl_uint count, const cl_mem* 
 
 constexpr ClGlCalls kPlayed{extensions, driving, createContext, wrap, acquire, release};
 
+// As the context's own: what the program waits for is what is tested.
+void finishAndCount() {
+    gpu::currentContext().finish();
+    ++played.finishes;
+    if (played.counts) played.finishedAfter = glCount().all();
+}
+
 // A block of water: `sides` particles along an edge.
 SceneFile block(int sides) {
     SceneFile scene;
@@ -141,7 +155,9 @@ class GlSharingTest : public GpuTest {
     }
     std::unique_ptr<Device> playing(Lie lie = Lie::none) {
         played.lie = lie;
-        auto made = makeClDevice(ShaderFiles::developer(), {}, {.gl = gpu::currentContext(), .glCalls = &kPlayed});
+        GlContext gl = gpu::currentContext();
+        gl.finish = finishAndCount;
+        auto made = makeClDevice(ShaderFiles::developer(), {}, {.gl = gl, .glCalls = &kPlayed});
         EXPECT_TRUE(made);
         return std::move(*made);
     }
@@ -276,6 +292,36 @@ TEST_F(GlSharingTest, SharedBuffersHoldTheWorldAndAreAcquiredAndReleasedOnceAFra
         EXPECT_EQ(upload.facts().bytes, 0U);
         EXPECT_EQ(sentenceOf(upload.facts()).rfind("shared with OpenCL: ", 0), 0U) << sentenceOf(upload.facts());
         EXPECT_EQ(liveSoon(static_cast<int>(played.together)), static_cast<int>(played.together)) << "wrapped once, however many frames";
+    }
+}
+
+// The simulated driver reads OpenGL's buffers by a call that waits by itself; drivers of GPUs do not. Without cl_khr_gl_event, an acquire
+// must come after a glFinish that no command of OpenGL follows; with it, nothing waits.
+TEST_F(GlSharingTest, OpenGlIsFinishedBeforeEachAcquireUnlessTheDriverOrdersTheCommands) {
+    for (const bool ordered : {false, true}) {
+        SCOPED_TRACE(ordered ? "cl_khr_gl_event" : "no cl_khr_gl_event");
+        played = {};
+        if (ordered) played.extensions += " cl_khr_gl_event";
+        ASSERT_TRUE(gpu::load(countingFind));
+        startGlCount();
+        played.counts = true;
+        const std::unique_ptr<Device> device = playing();
+        ASSERT_NE(device->glShare().by, nullptr) << device->glShare().whyNot;
+        const auto session = sessionOn(*device, block(8));
+        FluidUpload upload;
+        for (int frame = 0; frame < 3; ++frame) {
+            session->step(1.0 / 60, true);
+            const auto view = upload.view(session->world(), session->scene().look);
+            ASSERT_TRUE(view);
+            EXPECT_STREQ(upload.facts().way, "shared with OpenCL");
+            expectDrawn(session->world(), *view);  // commands of OpenGL, which the next frame must finish
+        }
+        EXPECT_GE(played.acquires, 5) << "two of the test at start, and one a frame";
+        EXPECT_EQ(played.inOrder, ordered ? 0 : played.acquires);
+        EXPECT_EQ(played.finishes, ordered ? 0 : played.acquires);
+        const GlCalls calls = glCount();
+        const auto finished = calls.byName.find("glFinish");
+        EXPECT_EQ(finished == calls.byName.end() ? 0U : finished->second, static_cast<size_t>(played.finishes));
     }
 }
 

@@ -25,6 +25,7 @@ struct BenchRow {
 
 struct BenchContext {
     int runs = 5;                                 // measured runs of each row
+    bool named = false;                           // the person asked for this case, not for all
     bool quick = false;                           // gpu: one device, the smallest sizes; gpu_model: nothing is measured
     double seconds = 90;                          // gpu: it ends after about this time
     Json::Value* json = nullptr;                  // of --json: a case may add values under its own name

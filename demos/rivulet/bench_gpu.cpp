@@ -1,18 +1,25 @@
 // A minute on a user's GPU: whether it computes the same water as the cpu, then how long steps and pictures take, beside the cost model's
 // prediction. And the page of that model.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <json/json.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "demos/rivulet/bench_cases.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/context_egl.h"
+#include "engine/compute/device_cl.h"
 #include "engine/core/timeline.h"
+#include "engine/gpu/current_context.h"
+#include "engine/gpu/device_gl.h"
 #include "fluid/render/backend.h"
 #include "fluid/validate/gpu_check.h"
 #include "fluid/validate/gpu_page.h"
@@ -42,18 +49,22 @@ Json::Value jsonOf(const SeriesRow& row) {
     v["method"] = row.method;
     v["particles"] = row.particles;
     v["stepMs"] = row.stepMs;
-    v["predictedStepMs"] = row.predictedStepMs;
     v["iterations"] = row.iterations;
     v["warmSteps"] = row.warmSteps;
-    v["frameMs"] = row.frameMs;
-    v["predictedFrameMs"] = row.predictedFrameMs;
     v["passes"] = jsonOf(row.passes);
-    v["predictedPasses"] = jsonOf(row.predictedPasses);
+    if (row.predictedStepMs > 0) {
+        v["predictedStepMs"] = row.predictedStepMs;
+        v["frameMs"] = row.frameMs;
+        v["predictedFrameMs"] = row.predictedFrameMs;
+        v["predictedPasses"] = jsonOf(row.predictedPasses);
+    }
     if (row.drawMs == 0) return v;
     v["drawMs"] = row.drawMs;
-    v["predictedDrawMs"] = row.predictedDrawMs;
     v["drawPasses"] = jsonOf(row.drawPasses);
-    v["predictedDrawPasses"] = jsonOf(row.predictedDrawPasses);
+    if (row.predictedDrawMs > 0) {
+        v["predictedDrawMs"] = row.predictedDrawMs;
+        v["predictedDrawPasses"] = jsonOf(row.predictedDrawPasses);
+    }
     return v;
 }
 
@@ -63,10 +74,11 @@ Json::Value jsonOf(const ExaminedGpu& e) {
     v["name"] = e.name;
     v["driver"] = e.device->info().driver;
     v["software"] = e.device->info().software;
-    if (e.from.empty()) return v;  // there was no time to measure its rates
-    v["predictedFrom"] = e.from;
+    if (!e.from.empty()) v["predictedFrom"] = e.from;
+    if (!e.measured) return v;
     Json::Value& r = v["rates"];
     r["bytesPerSecond"] = e.rates.bandwidth;
+    r["copiedBytes"] = e.rates.copied;
     r["arithmetic"] = e.rates.arithmetic;
     r["integer"] = e.rates.integer;
     r["special"] = e.rates.special;
@@ -83,71 +95,156 @@ Json::Value jsonOf(const GpuFinding& f) {
     Json::Value v(Json::objectValue);
     v["device"] = f.device;
     v["what"] = f.what;
+    v["pass"] = f.passed();
+    if (!f.error.empty()) {
+        v["error"] = f.error;
+        return v;
+    }
     v["unit"] = f.unit;
     v["difference"] = std::isfinite(f.difference) ? Json::Value(f.difference) : Json::Value();  // null: not a number, or without bound
     v["limit"] = f.limit;
-    v["pass"] = f.passed();
     return v;
 }
 
 std::string sentenceOf(const SeriesRow& row) {
-    std::string text = fmt::format("{} particles take {:.3g} ms a substep with {} (predicted: {:.3g})", row.particles, row.stepMs,
-                                   row.method, row.predictedStepMs);
+    const auto beside = [](double ms) { return ms > 0 ? fmt::format(" (predicted: {:.3g})", ms) : std::string(); };
+    std::string text =
+        fmt::format("{} particles take {:.3g} ms a substep with {}{}", row.particles, row.stepMs, row.method, beside(row.predictedStepMs));
     if (row.drawMs > 0)
-        text += fmt::format(" and {:.3g} ms to draw at {}x{} (predicted: {:.3g})", row.drawMs, kSeriesWidth, kSeriesHeight,
-                            row.predictedDrawMs);
+        text += fmt::format(" and {:.3g} ms to draw at {}x{}{}", row.drawMs, kSeriesWidth, kSeriesHeight, beside(row.predictedDrawMs));
     return text;
+}
+
+// Why a device is absent, without the remedy of verbs that have an option --backend.
+std::string reasonIn(std::string message) {
+    for (const std::string_view remedy : {" or use --backend cpu", "; use --backend cpu"})
+        if (message.ends_with(remedy)) message.resize(message.size() - remedy.size());
+    return message;
 }
 
 // The devices gl and cl of this machine, and the context of the first.
 struct GpuDevices {
+    struct Absent {
+        const char* backend;
+        std::string why;
+    };
     Result<ContextEgl> egl = ContextEgl::create();
     GlFacts gl = egl ? currentGlFacts() : noGl(egl.error().message);
     std::vector<std::unique_ptr<Device>> list;
+    std::vector<Absent> absent;
 
-    // `one`: the first of them alone.
+    // `one`: the first of them alone. `log` receives which device is absent, and why.
     GpuDevices(const Log& log, bool one) {
-        for (const char* name : {"gl", "cl"}) {
-            std::unique_ptr<Device> device = makeDevice(name, gl, log);
-            if (std::string_view(backendName(device->backend())) == name) list.push_back(std::move(device));
-            if (one && !list.empty()) return;
+        const ShaderFiles files = ShaderFiles::developer();
+        if (gl.present())
+            list.push_back(makeGlDevice(files, log));
+        else
+            absent.push_back({"gl", reasonIn(gl.absent)});
+        if (!one || list.empty()) {
+            Result<std::unique_ptr<Device>> cl = makeClDevice(files, log, {.gl = gl.present() ? gpu::currentContext() : GlContext{}});
+            if (cl)
+                list.push_back(std::move(*cl));
+            else
+                absent.push_back({"cl", reasonIn(cl.error().message)});
         }
+        for (const auto& [backend, why] : absent) log.notice(fmt::format("{}: not measured: {}", backend, why));
     }
     std::string nameOf(const Device& device) const { return device.backend() == Backend::gl ? gl.renderer : device.info().name; }
 };
 
+bool isLost(const Device& device) { return device.health().state == DeviceHealth::lost; }
+
 // What is left out for lack of time or memory, to be named in one sentence.
 using LeftOut = std::vector<std::string>;
 
-Result<std::vector<GpuFinding>> compare(const GpuDevices& devices, const SceneFile& scene, double until, Progress& progress, LeftOut& out) {
+// What the devices compute otherwise than the cpu, and what they fail to do; in the JSON at once.
+class Findings {
+  public:
+    explicit Findings(Json::Value& checks) : checks_(checks) { checks_ = Json::Value(Json::arrayValue); }
+    void add(const GpuFinding& f) {
+        checks_.append(jsonOf(f));
+        agree_ = agree_ || f.passed();
+        if (f.passed()) return;
+        const auto append = [](std::string& to, const std::string& text) { to += (to.empty() ? "" : "; ") + text; };
+        append(f.error.empty() ? differences_ : failures_, f.sentence());
+        if (!f.error.empty()) append(failed_, fmt::format("{}: {}", f.device, f.what));
+    }
+    void fail(const Device& device, const std::string& what, const Error& error) {
+        add({.device = backendName(device.backend()), .what = what, .unit = {}, .error = error.message});
+    }
+    bool correct() const { return differences_.empty() && failures_.empty(); }
+    // Continues a sentence after a device's name. `all`: there was time for all comparisons.
+    const char* verdict(bool all) const {
+        if (!differences_.empty()) return "does not compute the same water as the cpu";
+        if (!agree_) return "could not be compared with the cpu";
+        if (!failures_.empty()) return "computes the same water as the cpu where it could be compared";
+        return all ? "computes the same water as the cpu" : "computes the same water as the cpu, as far as there was time to compare";
+    }
+    const std::string& failed() const { return failed_; }  // "cl: pbf; cl: rates"
+    // Error (failed): something differs, or a device failed.
+    Status status() const {
+        if (correct()) return ok();
+        std::string why = differences_.empty() ? "" : "the water differs from the cpu's: " + differences_;
+        if (!failures_.empty()) why += fmt::format("{}a device failed: {}", why.empty() ? "" : "; ", failures_);
+        return rivulet::failed(why);
+    }
+
+  private:
+    Json::Value& checks_;
+    bool agree_ = false;
+    std::string differences_, failures_, failed_;
+};
+
+// All devices are compared, also after one has failed.
+Status compare(const BenchContext& context, const GpuDevices& devices, const SceneFile& scene, double until, Progress& progress,
+               Findings& findings, LeftOut& out) {
     const std::unique_ptr<Device> cpu = makeCpu();
-    std::vector<GpuFinding> findings;
     for (const std::unique_ptr<Device>& device : devices.list) {
         progress.show(0.05, fmt::format("{}: comparing with the cpu", backendName(device->backend())));
-        Result<std::vector<GpuFinding>> found = checkDevice(*device, *cpu, until, out);
-        if (!found) return found.error();
-        findings.insert(findings.end(), found->begin(), found->end());
+        for (const GpuFinding& found : checkDevice(*device, *cpu, until, out)) findings.add(found);
+        if (Status saved = context.save(); !saved) return saved;
     }
-    if (!devices.gl.present()) return findings;
-    if (hostSeconds() > until) {
+    if (!devices.gl.present()) return ok();
+    Device& gl = *devices.list.front();
+    if (hostSeconds() > until || isLost(gl)) {
         out.emplace_back("gl: comparison of a picture");
-        return findings;
+        return ok();
     }
-    Result<std::unique_ptr<FluidWorld>> world =
-        FluidWorld::create(*devices.list.front(), seriesWater(scene, "pbf", kSoftwareSides[0]), {}, {});
-    if (!world) return world.error();
-    (*world)->step({}, 1.0e-3);
-    Result<GpuFinding> picture = checkPicture(**world);
-    if (!picture) return picture.error();
-    findings.push_back(std::move(*picture));
-    return findings;
+    const auto picture = [&]() -> Result<GpuFinding> {
+        Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(gl, seriesWater(scene, "pbf", kSoftwareSides[0]), {}, {});
+        if (!world) return world.error();
+        (*world)->step({}, 1.0e-3);
+        return checkPicture(**world);
+    };
+    if (const Result<GpuFinding> found = picture(); found)
+        findings.add(*found);
+    else
+        findings.fail(gl, "picture", found.error());
+    return ok();
 }
 
-// Steps all methods on all devices, and draws the first method. Each row is saved at once. Returns the row of the first device and method
-// with most particles.
-Result<std::optional<SeriesRow>> runSeries(const BenchContext& context, const std::vector<ExaminedGpu>& gpus, const SceneFile& scene,
-                                           SceneRenderer* renderer, double until, Progress& progress, Json::Value& series, LeftOut& out) {
-    std::optional<SeriesRow> largest;
+// The row of the first method with most particles, of the first device that has one.
+struct Largest {
+    const ExaminedGpu* gpu = nullptr;
+    SeriesRow row;
+};
+
+void reportRow(const BenchContext& context, const SeriesRow& row) {
+    const auto report = [&](const std::string& what, const char* unit, double ms, double predicted) {
+        BenchRow line{
+            .name = fmt::format("gpu, {}: {}, {}", row.device, what, row.particles), .unit = unit, .value = spreadOf({ms}), .passes = {}};
+        if (predicted > 0) line.passes["predicted"] = predicted;
+        context.report(line);
+    };
+    report(row.method, "ms/step", row.stepMs, row.predictedStepMs);
+    if (row.drawMs > 0) report("drawn", "ms", row.drawMs, row.predictedDrawMs);
+}
+
+// Steps all methods on all devices, and draws the first method. Each row is saved at once.
+Result<Largest> runSeries(const BenchContext& context, const std::vector<ExaminedGpu>& gpus, const SceneFile& scene,
+                          SceneRenderer* renderer, double until, Progress& progress, Json::Value& series, Findings& findings,
+                          LeftOut& out) {
+    Largest largest;
     const double begun = hostSeconds(), share = kSeriesShare * context.seconds / static_cast<double>(gpus.size() * kGpuMethods.size());
     for (const ExaminedGpu& gpu : gpus)
         for (const char* method : kGpuMethods) {
@@ -164,34 +261,29 @@ Result<std::optional<SeriesRow>> runSeries(const BenchContext& context, const st
             };
             for (const int side : context.quick ? sides.first(1) : sides) {
                 const double at = hostSeconds(), expected = before > 0 ? last * seriesParticles(side) / seriesParticles(before) : 0;
-                if (at > until || at - from + expected > share) {
-                    leaveOut(side, "");
+                if (isLost(*gpu.device) || at > until || at - from + expected > share) {
+                    leaveOut(side, isLost(*gpu.device) ? " (the device is lost)" : "");
                     break;
                 }
                 progress.show(0.25 + 0.75 * std::min((at - begun) / (until - begun), 1.0),
                               fmt::format("{}, {}, {} particles", device, method, seriesParticles(side)));
                 Result<SeriesRow> row = measureSeries(gpu, scene, method, side, context.quick ? 0 : kStepSeconds, draws, until);
-                if (!row && row.error().memory && before > 0) {
+                if (!row) {
                     gpu.device->forgiveFull();
-                    leaveOut(side, " (memory)");
-                    break;  // as many as memory allows
+                    if (row.error().memory)  // as many as memory allows
+                        leaveOut(side, " (memory)");
+                    else
+                        findings.fail(*gpu.device, fmt::format("{} with {} particles", method, seriesParticles(side)), row.error());
+                    break;
                 }
-                if (!row) return row.error();
                 last = hostSeconds() - at;
                 before = side;
                 series.append(jsonOf(*row));
                 if (draws != nullptr && row->drawMs == 0)
                     out.push_back(fmt::format("{}: a picture of {} particles", device, row->particles));
-                const auto report = [&](const std::string& what, const char* unit, double ms, double predicted) {
-                    context.report({.name = fmt::format("gpu, {}: {}, {}", row->device, what, row->particles),
-                                    .unit = unit,
-                                    .value = spreadOf({ms}),
-                                    .passes = {{"predicted", predicted}}});
-                };
-                report(method, "ms/step", row->stepMs, row->predictedStepMs);
-                if (row->drawMs > 0) report("drawn", "ms", row->drawMs, row->predictedDrawMs);
+                reportRow(context, *row);
                 if (Status saved = context.save(); !saved) return saved.error();
-                if (&gpu == &gpus.front() && method == kGpuMethods[0]) largest = std::move(*row);
+                if (method == kGpuMethods[0] && (largest.gpu == nullptr || largest.gpu == &gpu)) largest = {&gpu, std::move(*row)};
             }
         }
     return largest;
@@ -202,61 +294,83 @@ Result<std::unique_ptr<SceneRenderer>> rendererOf(const GpuDevices& devices) {
     return SceneRenderer::create(ShaderFiles::developer());
 }
 
+// The rates of all devices. A device keeps its row of the JSON, which then holds them too.
+Result<std::vector<ExaminedGpu>> examineAll(const BenchContext& context, const GpuDevices& devices, double until, Progress& progress,
+                                            Json::Value& rows, Findings& findings, LeftOut& out) {
+    std::vector<ExaminedGpu> gpus;
+    for (const std::unique_ptr<Device>& device : devices.list) {
+        const std::string name = devices.nameOf(*device), what = fmt::format("{}: rates", backendName(device->backend()));
+        progress.show(0.2, what);
+        Result<ExaminedGpu> gpu = isLost(*device) ? Result<ExaminedGpu>(namedGpu(*device, name)) : examineGpu(*device, name, until);
+        if (gpu && !gpu->measured) out.push_back(what + (isLost(*device) ? " (the device is lost)" : ""));
+        if (!gpu && gpu.error().memory) out.push_back(what + " (memory)");
+        if (!gpu && !gpu.error().memory) findings.fail(*device, "rates", gpu.error());
+        gpus.push_back(gpu ? std::move(*gpu) : namedGpu(*device, name));
+        rows[static_cast<Json::ArrayIndex>(gpus.size() - 1)] = jsonOf(gpus.back());
+        if (Status saved = context.save(); !saved) return saved.error();
+    }
+    return gpus;
+}
+
+// Nothing can be measured: an error only for a person who named this case.
+Status withoutDevices(const BenchContext& context, const GpuDevices& devices, Json::Value& result) {
+    std::vector<std::string> why;
+    for (const GpuDevices::Absent& absent : devices.absent) why.push_back(fmt::format("{}: {}", absent.backend, absent.why));
+    result["sentence"] = fmt::format("Nothing was measured: {}.", fmt::join(why, "; "));
+    result["complete"] = true;
+    const std::string sentence = "the case gpu needs OpenGL or OpenCL, and this machine has neither: ";
+    if (context.named) return failed(sentence + "install a driver for one of them");
+    context.log.notice(sentence + "it is skipped");
+    return ok();
+}
+
 }  // namespace
 
 Status benchGpu(const BenchContext& context) {
     const double start = hostSeconds(), seriesUntil = start + kSeriesUntil * context.seconds;
-    const GpuDevices devices(context.log, context.quick);
-    if (devices.list.empty()) {
-        context.log.notice("the case gpu needs OpenGL or OpenCL, and this machine has neither: it is skipped");
-        return ok();
-    }
     Result<SceneFile> scene = loadScene("dam_break.json", {});
     if (!scene) return scene.error();
     Json::Value unused, &result = (context.json != nullptr ? *context.json : unused)["gpu"];
     Progress progress("gpu");
     LeftOut out;
 
-    // Correctness first: the speed of wrong water is of no use. What is known is saved at once: a person may send it after Ctrl-C.
+    // What is known is saved at once, the names of devices and drivers first: a person may send it after Ctrl-C, or when a driver ended the
+    // program.
+    const GpuDevices devices(context.log, context.quick);
     result["complete"] = false;
-    const Result<std::vector<GpuFinding>> findings = compare(devices, *scene, start + kChecksUntil * context.seconds, progress, out);
-    if (!findings) return findings.error();
-    std::string wrong;
-    result["checks"] = Json::Value(Json::arrayValue);
-    for (const GpuFinding& f : *findings) {
-        result["checks"].append(jsonOf(f));
-        if (!f.passed()) wrong += fmt::format("{}{}", wrong.empty() ? "" : "; ", f.sentence());
+    result["devices"] = result["notMeasured"] = Json::Value(Json::arrayValue);
+    for (const std::unique_ptr<Device>& device : devices.list)
+        result["devices"].append(jsonOf(ExaminedGpu{.device = device.get(), .name = devices.nameOf(*device)}));
+    for (const auto& [backend, why] : devices.absent) {
+        Json::Value& row = result["notMeasured"].append(Json::Value(Json::objectValue));
+        row["backend"] = backend;
+        row["reason"] = why;
     }
-    result["correct"] = wrong.empty();
-    const char* verdict = !wrong.empty() ? "does not compute the same water as the cpu"
-                          : out.empty()  ? "computes the same water as the cpu"
-                                         : "computes the same water as the cpu, as far as there was time to compare";
+    if (devices.list.empty()) return withoutDevices(context, devices, result);
     if (Status saved = context.save(); !saved) return saved;
 
-    std::vector<ExaminedGpu> gpus;
-    result["devices"] = Json::Value(Json::arrayValue);
-    for (const std::unique_ptr<Device>& device : devices.list) {
-        const char* name = backendName(device->backend());
-        progress.show(0.2, fmt::format("{}: rates", name));
-        Result<ExaminedGpu> gpu = ExaminedGpu{.device = device.get(), .name = devices.nameOf(*device)};
-        if (hostSeconds() < seriesUntil)
-            gpu = examineGpu(*device, devices.nameOf(*device));
-        else
-            out.push_back(fmt::format("{}: rates", name));
-        if (!gpu) return gpu.error();
-        result["devices"].append(jsonOf(*gpu));
-        gpus.push_back(std::move(*gpu));
-        if (Status saved = context.save(); !saved) return saved;
-    }
+    // Correctness first: the speed of wrong water is of no use.
+    Findings findings(result["checks"]);
+    if (Status compared = compare(context, devices, *scene, start + kChecksUntil * context.seconds, progress, findings, out); !compared)
+        return compared;
+    result["correct"] = findings.correct();
+    const char* verdict = findings.verdict(out.empty());
+    if (Status saved = context.save(); !saved) return saved;
+
+    const Result<std::vector<ExaminedGpu>> gpus = examineAll(context, devices, seriesUntil, progress, result["devices"], findings, out);
+    if (!gpus) return gpus.error();
     Result<std::unique_ptr<SceneRenderer>> renderer = std::unique_ptr<SceneRenderer>();
     if (hostSeconds() < seriesUntil) renderer = rendererOf(devices);
-    if (!renderer) return renderer.error();
+    if (!renderer) findings.fail(*devices.list.front(), "pictures", renderer.error());
     result["series"] = Json::Value(Json::arrayValue);
-    const Result<std::optional<SeriesRow>> largest =
-        runSeries(context, gpus, *scene, renderer->get(), seriesUntil, progress, result["series"], out);
+    const Result<Largest> largest =
+        runSeries(context, *gpus, *scene, renderer ? renderer->get() : nullptr, seriesUntil, progress, result["series"], findings, out);
     if (!largest) return largest.error();
-    std::string sentence = fmt::format("{} {}; ", gpus.front().name, verdict);
-    sentence += *largest ? fmt::format("{} (from {}).", sentenceOf(**largest), gpus.front().from) : "no size was measured.";
+    const ExaminedGpu& named = largest->gpu != nullptr ? *largest->gpu : gpus->front();
+    std::string sentence = fmt::format("{} {}; ", named.name, verdict);
+    sentence += largest->gpu == nullptr ? "no size was measured." : sentenceOf(largest->row);
+    if (largest->gpu != nullptr) sentence += named.from.empty() ? "." : fmt::format(" (from {}).", named.from);
+    if (!findings.failed().empty()) sentence += fmt::format(" Failed: {}.", findings.failed());
     result["leftOut"] = Json::Value(Json::arrayValue);
     for (const std::string& what : out) result["leftOut"].append(what);
     if (!out.empty()) sentence += fmt::format(" Left out after {:.0f} s: {}.", hostSeconds() - start, fmt::join(out, "; "));
@@ -265,7 +379,7 @@ Status benchGpu(const BenchContext& context) {
     result["complete"] = true;
     fmt::print("{}\n", sentence);
     flushOutput();
-    return wrong.empty() ? ok() : Status(failed(fmt::format("the water differs from the cpu's: {}", wrong)));
+    return findings.status();
 }
 
 Status benchGpuModel(const BenchContext& context) {

@@ -139,6 +139,7 @@ int benchVerb(const Arguments& arguments) {
     Status done = ok();
     for (const BenchCase* benchCase : cases) {
         BenchContext context;
+        context.named = !names.empty();
         context.quick = quick;
         context.seconds = seconds.value_or(context.seconds);
         context.json = &all;

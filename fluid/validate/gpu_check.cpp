@@ -14,6 +14,7 @@
 #include "fluid/flow/surface_flow.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/scene/solids_bullet.h"
+#include "fluid/session/cpu_fallback.h"
 #include "fluid/session/scene_renderer.h"
 #include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/host_particles.h"
@@ -201,11 +202,12 @@ FluidParams oneStepDam(const char* method, float spacing) {
 }
 
 std::string GpuFinding::sentence() const {
+    if (!error.empty()) return fmt::format("{}: {}: {}", device, what, error);
     return passed() ? fmt::format("{}: {} agree within {:.2g} {}", device, what, difference, unit)
                     : fmt::format("{}: {} differ by {:.3g} {}, allowed are {:.2g}", device, what, difference, unit, limit);
 }
 
-Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu, double until, std::vector<std::string>& leftOut) {
+std::vector<GpuFinding> checkDevice(Device& device, Device& cpu, double until, std::vector<std::string>& leftOut) {
     std::vector<GpuFinding> found;
     FluidParams forces = oneStepDam("dfsph", kSpacing);
     forces.forces.tension = 0.07F;
@@ -219,10 +221,24 @@ Result<std::vector<GpuFinding>> checkDevice(Device& device, Device& cpu, double 
         {"dfsph with tension and vorticity", [&] { return water("dfsph with tension and vorticity", forces); }},
         {"bodies in contact in water", [&] { return checkBodies(device, cpu, until, found); }},
         {"drops on a skin", [&] { return checkDrops(device, cpu, until, found); }}};
+    const char* backend = backendName(device.backend());
+    bool lost = false, compared = false;
     for (const auto& [name, check] : checks) {
-        Result<bool> done = found.empty() || hostSeconds() <= until ? check() : Result<bool>(false);
-        if (!done) return done.error();
-        if (!*done) leftOut.push_back(fmt::format("{}: comparison of {}", backendName(device.backend()), name));
+        const size_t before = found.size();
+        Result<bool> done = !lost && (!compared || hostSeconds() <= until) ? check() : Result<bool>(false);
+        if (!lost && device.health().state == DeviceHealth::lost) {  // it computes nothing: what was found then is no difference
+            lost = true;
+            if (done) done = stillWorks(device).error();
+        }
+        if (!done) {
+            found.resize(before);
+            found.push_back({.device = backend, .what = name, .unit = {}, .error = done.error().message});
+            device.forgiveFull();
+        } else if (*done) {
+            compared = true;
+        } else {
+            leftOut.push_back(fmt::format("{}: comparison of {}", backend, name));
+        }
     }
     return found;
 }

@@ -1,4 +1,4 @@
-// The rates of a device, which are measured with buffers as large as it allows.
+// The rates of a device, which are measured with buffers as large as it allows; and the comparison of one that is lost.
 #include "fluid/validate/gpu_rates.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include "engine/core/timeline.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/render/backend.h"
+#include "fluid/validate/gpu_check.h"
 #include "fluid/validate/gpu_series.h"
 #include "tests/unit/opengl_test.h"
 
@@ -115,6 +116,22 @@ TEST(GpuRates, WithoutThemAGpuIsPredictedByItsNameAlone) {
     EXPECT_EQ(namedGpu(*cpu, "NVIDIA GeForce RTX 3060/PCIe/SSE2").from, "RTX 3060, by its name");
     EXPECT_EQ(namedGpu(*cpu, "NVIDIA GeForce RTX 3060/PCIe/SSE2").model.name, "RTX 3060");
     EXPECT_EQ(namedGpu(*cpu, "a GPU that is not in the table").from, "");
+}
+
+// Here because it needs a device that is lost; program_gpu_test.cpp has devices that differ, or that do not compile a kernel.
+TEST(GpuCheck, ALostDeviceIsOneFindingAndTheRestIsLeftOut) {
+    const auto made = makeClDevice(ShaderFiles::developer(), {}, {.failAfter = 40});
+    if (!made && testing::mayLackOpenGl()) GTEST_SKIP() << made.error().message;
+    ASSERT_TRUE(made) << made.error().message;
+    std::vector<std::string> leftOut;
+    const std::vector<GpuFinding> found = checkDevice(**made, *makeCpu(), 1.0e300, leftOut);
+    ASSERT_EQ(found.size(), 1U) << "no differences of results that are none";
+    EXPECT_FALSE(found[0].passed());
+    EXPECT_EQ(found[0].what, "wcsph");
+    EXPECT_NE(found[0].error, "");
+    EXPECT_EQ(found[0].sentence(), "cl: wcsph: " + found[0].error);
+    EXPECT_EQ(leftOut.size(), 5U);
+    EXPECT_EQ((*made)->health().state, DeviceHealth::lost);
 }
 
 }  // namespace

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 #include <json/json.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "engine/core/file.h"
 #include "tests/unit/program_runner.h"
@@ -32,8 +36,8 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
     const Scratch scratch;
     const std::string json = (scratch.path() / "gpu.json").string();
     const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900", "--json", json});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
     if (absent(outcome)) GTEST_SKIP() << outcome.err;
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("computes the same water as the cpu; "), std::string::npos) << outcome.out;
     const Json::Value gpu = readJson(json)["gpu"];
     EXPECT_TRUE(gpu["correct"].asBool());
@@ -51,7 +55,7 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
     }
     for (const Json::Value& device : gpu["devices"]) {
         for (const char* key : {"backend", "name", "driver", "predictedFrom"}) EXPECT_TRUE(device[key].isString()) << key;
-        for (const char* key : {"bytesPerSecond", "arithmetic", "integer", "special", "loads", "rounds", "dispatchMs"})
+        for (const char* key : {"bytesPerSecond", "copiedBytes", "arithmetic", "integer", "special", "loads", "rounds", "dispatchMs"})
             EXPECT_GT(device["rates"][key].asDouble(), 0) << key;
         if (device["backend"] == "gl")
             for (const char* key : {"fragments", "filteredReads", "texelFetches"}) EXPECT_GT(device["rates"][key].asDouble(), 0) << key;
@@ -128,12 +132,31 @@ TEST(ProgramGpu, EndsInTimeAndNamesWhatIsLeftOut) {
     EXPECT_FALSE(gpu["devices"][0]["name"].asString().empty());
 }
 
+// Names of devices and drivers are in the file from the beginning: a driver may end the program in the first comparison.
+TEST(ProgramGpu, ARunThatEndsAtOnceLeavesTheNamesOfDevices) {
+    const Scratch scratch;
+    const std::string json = (scratch.path() / "gpu.json").string();
+    RunOptions options;
+    options.whileRunning = [&json](pid_t) { return std::filesystem::exists(json) ? SIGKILL : 0; };
+    const Outcome outcome = runProgram({"bench", "gpu", "--json", json}, options);
+    if (absent(outcome)) GTEST_SKIP() << outcome.err;
+    EXPECT_EQ(outcome.code, 128 + SIGKILL) << outcome.err;
+    const Json::Value gpu = readJson(json)["gpu"];
+    EXPECT_FALSE(gpu["complete"].asBool());
+    EXPECT_EQ(gpu["devices"].size() + gpu["notMeasured"].size(), 2U) << "gl and cl";
+    for (const Json::Value& device : gpu["devices"])
+        for (const char* key : {"backend", "name", "driver"}) EXPECT_FALSE(device[key].asString().empty()) << key;
+}
+
 // As soon as the comparisons are done they are in the file, and stay there.
 TEST(ProgramGpu, AnInterruptedRunLeavesWhatItKnows) {
     const Scratch scratch;
     const std::string json = (scratch.path() / "gpu.json").string();
     RunOptions options;
-    options.whileRunning = [&json](pid_t) { return std::filesystem::exists(json) ? SIGINT : 0; };
+    options.whileRunning = [&json](pid_t) {
+        const Result<std::string> text = readFile(json);
+        return text && text->find("\"correct\"") != std::string::npos ? SIGINT : 0;
+    };
     const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900", "--json", json}, options);
     if (absent(outcome)) GTEST_SKIP() << outcome.err;
     EXPECT_EQ(outcome.code, 130) << outcome.err;
@@ -158,6 +181,79 @@ TEST(ProgramGpu, AWrongKernelIsNamedAndEndsWithOne) {
     const Json::Value all = readJson(json);  // it is written nevertheless: a person sends it
     EXPECT_FALSE(all["gpu"]["correct"].asBool());
     EXPECT_NE(all["error"].asString().find("pbf"), std::string::npos);
+}
+
+// A kernel that one device cannot compile: the other is measured, and the file names both.
+TEST(ProgramGpu, ADeviceThatFailsIsNamedAndTheOtherIsMeasured) {
+    const std::pair<const char*, const char*> faults[] = {{"gl", "GL_core_profile"}, {"cl", "__OPENCL_C_VERSION__"}};
+    for (const auto& [broken, macro] : faults) {
+        SCOPED_TRACE(broken);
+        const Scratch scratch;
+        const Shaders shaders(scratch);
+        for (const char* kernel : {"fluid/methods/wcsph_density", "bench/rate_copy"})
+            shaders.replace(kernel, "KERNEL(", fmt::format("#ifdef {}\n#error planted\n#endif\nKERNEL(", macro));
+        const std::string json = (scratch.path() / "gpu.json").string();
+        const Outcome outcome = runProgram({"bench", "gpu", "--seconds", "12", "--json", json}, shaders.options());
+        const Json::Value all = readJson(json), &gpu = all["gpu"];
+        if (!gpu["notMeasured"].empty()) {
+            EXPECT_EQ(std::getenv("RIVULET_TEST_DEVICES"), nullptr) << outcome.err;
+            GTEST_SKIP() << outcome.err;
+        }
+        EXPECT_EQ(outcome.code, 1) << outcome.err;
+        EXPECT_NE(outcome.err.find(fmt::format("a device failed: {}: wcsph: ", broken)), std::string::npos) << outcome.err;
+        EXPECT_EQ(outcome.err.find("differs"), std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.out.find("computes the same water as the cpu where it could be compared; "), std::string::npos) << outcome.out;
+        EXPECT_NE(outcome.out.find(fmt::format("Failed: {}: wcsph", broken)), std::string::npos) << outcome.out;
+        EXPECT_TRUE(gpu["complete"].asBool());
+        EXPECT_FALSE(gpu["correct"].asBool());
+        EXPECT_NE(all["error"].asString().find("wcsph_density"), std::string::npos);
+        const auto late = [&gpu](const std::string& device) {  // there was no time for its rates
+            return std::any_of(gpu["leftOut"].begin(), gpu["leftOut"].end(), [&](const auto& what) { return what == device + ": rates"; });
+        };
+        ASSERT_EQ(gpu["devices"].size(), 2U);
+        for (const Json::Value& device : gpu["devices"]) {
+            for (const char* key : {"backend", "name", "driver"}) EXPECT_FALSE(device[key].asString().empty()) << key;
+            EXPECT_EQ(device.isMember("rates"), device["backend"] != broken && !late(device["backend"].asString()));
+        }
+        std::map<std::string, int> passed, failed;
+        for (const Json::Value& check : gpu["checks"]) ++(check["pass"].asBool() ? passed : failed)[check["device"].asString()];
+        for (const auto& [device, count] : failed) EXPECT_EQ(device, broken) << count;
+        EXPECT_GE(failed[broken], late(broken) ? 1 : 2) << "wcsph and rates";
+        EXPECT_GE(passed[broken == std::string("gl") ? "cl" : "gl"], 2) << "positions and velocities of wcsph at least";
+    }
+}
+
+TEST(ProgramGpu, AnAbsentDeviceIsNamedWithTheReason) {
+    const Scratch scratch;
+    const std::string json = (scratch.path() / "gpu.json").string();
+    RunOptions options;
+    options.environment["OCL_ICD_VENDORS"] = "/nonexistent";
+    Outcome outcome = runProgram({"bench", "gpu", "--seconds", "1", "--json", json}, options);
+    EXPECT_NE(outcome.err.find("cl: not measured: this machine has no working OpenCL driver; install one"), std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(outcome.err.find("--backend"), std::string::npos) << outcome.err;
+    if (!absent(outcome)) {
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        const Json::Value gpu = readJson(json)["gpu"];
+        ASSERT_EQ(gpu["notMeasured"].size(), 1U);
+        EXPECT_EQ(gpu["notMeasured"][0]["backend"].asString(), "cl");
+        EXPECT_NE(gpu["notMeasured"][0]["reason"].asString().find("no working OpenCL driver"), std::string::npos);
+        ASSERT_EQ(gpu["devices"].size(), 1U);
+        EXPECT_EQ(gpu["devices"][0]["backend"].asString(), "gl");
+    }
+    // With neither, nothing is measured, which is no success.
+    options.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/nonexistent.json";
+    options.environment["EGL_PLATFORM"] = "none";
+    outcome = runProgram({"bench", "gpu", "--json", json}, options);
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("needs OpenGL or OpenCL, and this machine has neither"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("--backend"), std::string::npos) << outcome.err;
+    const Json::Value all = readJson(json), &gpu = all["gpu"];
+    EXPECT_NE(all["error"].asString().find("has neither"), std::string::npos);
+    EXPECT_EQ(gpu["devices"].size(), 0U);
+    ASSERT_EQ(gpu["notMeasured"].size(), 2U);
+    for (const Json::Value& row : gpu["notMeasured"]) EXPECT_FALSE(row["reason"].asString().empty());
+    EXPECT_NE(gpu["sentence"].asString().find("Nothing was measured: gl: "), std::string::npos);
 }
 
 TEST(ProgramGpu, BadArgumentsAreRefused) {

@@ -110,7 +110,7 @@ def count_kernels(program, to, spacings, methods, _worlds):
                 print(f"{method}, {particles} particles: {substeps} substeps", flush=True)
     write(to / "kernels.csv", "What the kernels of dam_break do in a dispatch, a thread, means: counted in Oclgrind by tests/gpu_cost/count.py kernels.\n"
           "# variants: its defines, - if none. per: calls are in a step, an iteration or a frame; frame_calls: in a frame, more. waves: share of a GPU's waves that\n"
-          "# registers allow. step8, step32, step64: operations\n"
+          "# registers allow, empty if tests/gpus/table.csv has none of the variants. step8, step32, step64: operations\n"
           "# of a thread where so many go through the code in step. longest: operations and loads of the longest thread of a dispatch. sectors:\n"
           "# 32 bytes, of the accesses of 32 threads together, over 32. Bytes: read and written, each sector once a dispatch; group_bytes: once a\n"
           "# work group.", rows)

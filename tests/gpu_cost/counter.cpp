@@ -5,10 +5,10 @@
 //
 // Arithmetic on a vector counts once for each component, and a * b + c, where the compiler may contract it, once. Operations that cost a
 // GPU nothing are not counted: moves between registers, which Oclgrind sees as loads and stores of private memory, phi nodes, casts of
-// pointers, and parts of vectors taken out or put in.
+// pointers, and parts of vectors taken out or put in. Threads in step: each part of the code costs what the thread in it with the most
+// operations has executed there, so that one thread in step has the operations that it has alone.
 #include <llvm/Analysis/LoopInfo.h>
 #include <llvm/IR/CFG.h>
-#include <llvm/IR/CallingConv.h>
 #include <llvm/IR/Constants.h>
 #include <llvm/IR/DerivedTypes.h>
 #include <llvm/IR/Dominators.h>
@@ -18,14 +18,17 @@
 #include <algorithm>
 #include <array>
 #include <climits>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <map>
 #include <set>
 #include <sstream>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "oclgrind/Context.h"
@@ -46,15 +49,50 @@ constexpr size_t kSector = 32;                          // bytes: what a GPU's c
 constexpr std::array<size_t, 3> kWidths = {8, 32, 64};  // threads that a device runs in step
 constexpr unsigned kGlobal = 1, kConstant = 2, kLocal = 3;
 
-struct Thread {
-    std::array<double, kClasses> count{};
-    std::vector<unsigned> blocks = {};  // that it went through, by their order in the kernel
-    double operations() const {
-        double sum = 0;
-        for (const double c : count) sum += c;
-        return sum;
-    }
+struct Cost {
+    Class of = integer;
+    double count = 0;
 };
+
+// A function as one call runs it: a call that the compiler has not inlined is followed as if it had. A part is a block, or what is left of
+// one after such a call. Parts are numbered in the order in which threads in step go through them.
+struct Context {
+    struct Step {
+        Cost cost = {};
+        bool begins = false;        // a part
+        unsigned part = 0;          // if it begins one
+        Context* called = nullptr;  // by a call of a function with a body
+        bool returns = false;       // to the caller
+    };
+    Context* caller = nullptr;
+    std::unordered_map<const llvm::Instruction*, Step> steps = {};
+};
+
+double sumOf(const std::array<double, kClasses>& count) {
+    double sum = 0;
+    for (const double c : count) sum += c;
+    return sum;
+}
+
+struct Thread {
+    struct Visit {
+        unsigned part = 0;
+        double operations = 0;
+    };
+    std::array<double, kClasses> count{};
+    std::vector<Visit> visits = {};  // of parts, in turn
+    double noted = 0;                // operations of the instruction at hand: its accesses of memory are reported before it
+    Context* context = nullptr;
+    void add(Class of, double operations) { count[of] += operations, noted += operations; }
+    double operations() const { return sumOf(count); }
+};
+
+// A count that cannot be: the program ends, and no table is written.
+void insist(bool holds, const char* what) {
+    if (holds) return;
+    std::fprintf(stderr, "tests/gpu_cost/counter.cpp: %s\n", what);
+    std::_Exit(3);
+}
 
 // Sums over all dispatches of one kernel.
 struct Sums {
@@ -111,20 +149,21 @@ class Counter final : public oclgrind::Plugin {
         sums_ = &all_[std::getenv("RIVULET_COUNT_VARIANTS") != nullptr ? origin.path + "," + origin.variant : origin.path];
         sums_->variants.insert(origin.variant);
         ++sums_->calls;
+        root_ = rootOf(*invocation->getKernel());
         read_.clear();
         written_.clear();
         longest_ = {};
-        longestTime_ = 0;
     }
     void kernelEnd(const oclgrind::KernelInvocation*) override {
         sums_->readBytes += static_cast<double>(kSector * read_.size());
         sums_->writtenBytes += static_cast<double>(kSector * written_.size());
-        sums_->longest += longest_.operations();
-        sums_->longestLoads += longest_.count[load] + longest_.count[atomic];
+        sums_->longest += sumOf(longest_);
+        sums_->longestLoads += longest_[load] + longest_[atomic];
     }
     void workGroupBegin(const oclgrind::WorkGroup* group) override {
         const oclgrind::Size3 size = group->getGroupSize();
         threads_.assign(size.x * size.y * size.z, {});
+        for (Thread& t : threads_) t.context = root_;
         touched_.clear();
         merged_.clear();
         occurrence_.clear();
@@ -135,47 +174,58 @@ class Counter final : public oclgrind::Plugin {
         sums_->groupBytes += static_cast<double>(kSector * touched_.size());
         for (const Thread& t : threads_) {
             for (size_t k = 0; k < kClasses; ++k) sums_->count[k] += t.count[k];
-            if (t.operations() > longestTime_) longestTime_ = t.operations(), longest_ = t;
+            if (t.operations() > sumOf(longest_)) longest_ = t.count;
         }
+        for (size_t first = 0; first < threads_.size(); ++first)
+            insist(about(inStep(first, first + 1), threads_[first].operations()), "a thread alone has other operations in step");
         for (size_t w = 0; w < kWidths.size(); ++w)
             for (size_t first = 0; first < threads_.size(); first += kWidths[w]) {
                 const size_t end = std::min(first + kWidths[w], threads_.size());
-                double most = inStep(first, end);
-                for (size_t k = first; k < end; ++k) most = std::max(most, threads_[k].operations());
-                sums_->inStep[w] += most * static_cast<double>(end - first);
+                const double together = inStep(first, end);
+                double most = 0, all = 0;
+                for (size_t k = first; k < end; ++k) most = std::max(most, threads_[k].operations()), all += threads_[k].operations();
+                insist(together >= most - 1.0e-6 * most, "threads in step have fewer operations than one of them");
+                insist(together <= all + 1.0e-6 * all, "threads in step have more operations than one after the other");
+                sums_->inStep[w] += together * static_cast<double>(end - first);
             }
         for (const auto& [at, warps] : merged_)
             for (const auto& occurrences : warps)
                 for (const auto& sectors : occurrences) sums_->sectors += static_cast<double>(sectors.size());
     }
     void instructionExecuted(const oclgrind::WorkItem* item, const llvm::Instruction* instruction, const oclgrind::TypedValue&) override {
-        const Cost cost = costOf(instruction);
         Thread& thread = threadOf(item);
-        if (cost.count > 0) thread.count[cost.of] += cost.count;
-        if (cost.begins) thread.blocks.push_back(cost.block);
+        const auto found = thread.context->steps.find(instruction);
+        insist(found != thread.context->steps.end(), "an instruction is not of the function that runs");
+        const Context::Step& step = found->second;
+        if (step.begins) thread.visits.push_back({step.part, 0});
+        thread.add(step.cost.of, step.cost.count);
+        thread.visits.back().operations += thread.noted;
+        thread.noted = 0;
+        if (step.called != nullptr) thread.context = step.called;
+        if (step.returns) thread.context = thread.context->caller;
     }
     void memoryLoad(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, size_t address, size_t size) override {
         unsigned space = memory->getAddressSpace();  // constants are in global memory too
         if (const auto* by = llvm::dyn_cast<llvm::LoadInst>(item->getCurrentInstruction())) space = by->getPointerAddressSpace();
-        if (space == kLocal) ++threadOf(item).count[shared];
-        if (space == kConstant) ++threadOf(item).count[uniform];
+        if (space == kLocal) threadOf(item).add(shared, 1);
+        if (space == kConstant) threadOf(item).add(uniform, 1);
         if (space != kGlobal) return;
-        ++threadOf(item).count[load];
+        threadOf(item).add(load, 1);
         sums_->loadBytes += static_cast<double>(size);
         touch(item, address, size, read_);
     }
     void memoryStore(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, size_t address, size_t size, const uint8_t*) override {
         const unsigned space = memory->getAddressSpace();
-        if (space == kLocal) ++threadOf(item).count[shared];
+        if (space == kLocal) threadOf(item).add(shared, 1);
         if (space != kGlobal) return;
-        ++threadOf(item).count[store];
+        threadOf(item).add(store, 1);
         sums_->storeBytes += static_cast<double>(size);
         touch(item, address, size, written_);
     }
     void memoryAtomicLoad(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, oclgrind::AtomicOp, size_t address,
                           size_t size) override {
         if (memory->getAddressSpace() != kGlobal) return;
-        ++threadOf(item).count[atomic];
+        threadOf(item).add(atomic, 1);
         touch(item, address, size, read_);
     }
     void memoryAtomicStore(const oclgrind::Memory* memory, const oclgrind::WorkItem* item, oclgrind::AtomicOp, size_t address,
@@ -184,12 +234,7 @@ class Counter final : public oclgrind::Plugin {
     }
 
   private:
-    struct Cost {
-        Class of = integer;
-        double count = 0;
-        bool begins = false;  // a block
-        unsigned block = 0;
-    };
+    static bool about(double a, double b) { return std::abs(a - b) <= 1.0e-6 * std::max(a, b); }
 
     static Cost costOfCall(const llvm::CallInst& call) {
         const llvm::Function* f = call.getCalledFunction();
@@ -266,55 +311,46 @@ class Counter final : public oclgrind::Plugin {
                 return {};
         }
     }
-    Cost costOf(const llvm::Instruction* i) {
-        const auto [found, fresh] = costs_.try_emplace(i);
-        if (fresh) {
-            found->second = computeCost(i);
-            const llvm::Function* function = i->getFunction();
-            found->second.begins = i == &i->getParent()->front() && function->getCallingConv() == llvm::CallingConv::SPIR_KERNEL;
-            if (found->second.begins) found->second.block = blockOf(i->getParent());
-        }
-        return found->second;
+    Context* rootOf(const oclgrind::Kernel& kernel) {
+        const auto [known, fresh] = roots_.try_emplace({kernel.getProgram()->getUID(), kernel.getName()});
+        if (fresh) known->second = contextOf(*kernel.getFunction(), nullptr);
+        return known->second;
     }
-
-    // Blocks are numbered so that those of a loop come before all that follow it, and their operations summed.
-    unsigned blockOf(const llvm::BasicBlock* block) {
-        const auto known = blocks_.find(block);
-        if (known != blocks_.end()) return known->second;
-        auto& function = const_cast<llvm::Function&>(*block->getParent());
-        const llvm::DominatorTree dominators(function);
+    // Blocks are numbered so that those of a loop come before all that follow it, and those of a function between those around its call.
+    Context* contextOf(const llvm::Function& function, Context* caller) {
+        Context& context = contexts_.emplace_back();
+        context.caller = caller;
+        const llvm::DominatorTree dominators(const_cast<llvm::Function&>(function));
         const llvm::LoopInfo loops(dominators);
         std::vector<const llvm::BasicBlock*> order;  // post-order; from each block the ways out of a loop first
-        visit(&function.getEntryBlock(), loops, order);
-        for (auto each = order.rbegin(); each != order.rend(); ++each) {
-            blocks_[*each] = static_cast<unsigned>(blockOperations_.size());
-            blockOperations_.push_back(operationsOf(**each));
+        std::unordered_set<const llvm::BasicBlock*> visited;
+        visit(&function.getEntryBlock(), loops, visited, order);
+        for (auto block = order.rbegin(); block != order.rend(); ++block) {
+            bool begins = true;
+            for (const llvm::Instruction& i : **block) {
+                Context::Step step{
+                    .cost = computeCost(&i), .begins = begins, .returns = llvm::isa<llvm::ReturnInst>(i) && caller != nullptr};
+                if (begins) step.part = parts_++;
+                const auto* call = llvm::dyn_cast<llvm::CallInst>(&i);
+                const llvm::Function* called = call != nullptr ? call->getCalledFunction() : nullptr;
+                begins = called != nullptr && !called->isDeclaration();
+                if (begins) step.called = contextOf(*called, &context);
+                context.steps.emplace(&i, step);
+            }
         }
-        return blocks_.at(block);
+        return &context;
     }
-    // With those of functions that it calls, each block of theirs once.
-    static double operationsOf(const llvm::BasicBlock& block) {
-        double sum = 0;
-        for (const llvm::Instruction& i : block) {
-            sum += computeCost(&i).count;
-            if (llvm::isa<llvm::LoadInst>(i) || llvm::isa<llvm::StoreInst>(i) || llvm::isa<llvm::AtomicRMWInst>(i)) sum += 1;
-            const auto* call = llvm::dyn_cast<llvm::CallInst>(&i);
-            const llvm::Function* called = call != nullptr ? call->getCalledFunction() : nullptr;
-            if (called != nullptr && !called->isDeclaration())
-                for (const llvm::BasicBlock& each : *called) sum += operationsOf(each);
-        }
-        return sum;
-    }
-    void visit(const llvm::BasicBlock* block, const llvm::LoopInfo& loops, std::vector<const llvm::BasicBlock*>& order) {
-        if (!visited_.insert(block).second) return;
+    static void visit(const llvm::BasicBlock* block, const llvm::LoopInfo& loops, std::unordered_set<const llvm::BasicBlock*>& visited,
+                      std::vector<const llvm::BasicBlock*>& order) {
+        if (!visited.insert(block).second) return;
         std::vector<const llvm::BasicBlock*> next(llvm::succ_begin(block), llvm::succ_end(block));
         const llvm::Loop* loop = loops.getLoopFor(block);
         std::stable_partition(next.begin(), next.end(),
                               [&](const llvm::BasicBlock* each) { return loop != nullptr && !loop->contains(each); });
-        for (const llvm::BasicBlock* each : next) visit(each, loops, order);
+        for (const llvm::BasicBlock* each : next) visit(each, loops, visited, order);
         order.push_back(block);
     }
-    // The operations of threads that run in step: whatever of them is furthest behind goes on, with all that are at the same block, so that
+    // The operations of threads that run in step: whatever of them is furthest behind goes on, with all that are at the same part, so that
     // threads wait for each other at the end of a loop (Fung et al. 2007 compare such policies).
     double inStep(size_t first, size_t end) {
         at_.assign(end - first, 0);
@@ -322,11 +358,15 @@ class Counter final : public oclgrind::Plugin {
         for (;;) {
             unsigned next = UINT_MAX;
             for (size_t k = first; k < end; ++k)
-                if (at_[k - first] < threads_[k].blocks.size()) next = std::min(next, threads_[k].blocks[at_[k - first]]);
+                if (at_[k - first] < threads_[k].visits.size()) next = std::min(next, threads_[k].visits[at_[k - first]].part);
             if (next == UINT_MAX) return sum;
-            sum += blockOperations_[next];
-            for (size_t k = first; k < end; ++k)
-                if (at_[k - first] < threads_[k].blocks.size() && threads_[k].blocks[at_[k - first]] == next) ++at_[k - first];
+            double most = 0;
+            for (size_t k = first; k < end; ++k) {
+                size_t& at = at_[k - first];
+                if (at < threads_[k].visits.size() && threads_[k].visits[at].part == next)
+                    most = std::max(most, threads_[k].visits[at++].operations);
+            }
+            sum += most;
         }
     }
 
@@ -382,13 +422,12 @@ class Counter final : public oclgrind::Plugin {
     std::unordered_map<unsigned long, Origin> origins_;  // by program
     Sums* sums_ = nullptr;
     std::vector<Thread> threads_;
-    Thread longest_;
-    double longestTime_ = 0;
-    std::unordered_map<const llvm::Instruction*, Cost> costs_;
-    std::unordered_map<const llvm::BasicBlock*, unsigned> blocks_;
-    std::unordered_set<const llvm::BasicBlock*> visited_;
-    std::vector<double> blockOperations_;
-    std::vector<size_t> at_;  // of each thread's blocks
+    std::array<double, kClasses> longest_{};
+    std::deque<Context> contexts_;
+    std::map<std::pair<unsigned long, std::string>, Context*> roots_;  // of kernels, by program and name
+    Context* root_ = nullptr;
+    unsigned parts_ = 0;
+    std::vector<size_t> at_;  // of each thread's visits
     std::unordered_set<size_t> touched_, read_, written_;
     // instruction -> warp -> occurrence -> sectors
     std::unordered_map<const llvm::Instruction*, std::vector<std::vector<std::vector<size_t>>>> merged_;

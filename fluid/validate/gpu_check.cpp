@@ -226,6 +226,8 @@ std::vector<GpuFinding> checkDevice(Device& device, Device& cpu, double until, s
     for (const auto& [name, check] : checks) {
         const size_t before = found.size();
         Result<bool> done = !lost && (!compared || hostSeconds() <= until) ? check() : Result<bool>(false);
+        device.finish();
+        device.poll();
         if (!lost && device.health().state == DeviceHealth::lost) {  // it computes nothing: what was found then is no difference
             lost = true;
             if (done) done = stillWorks(device).error();

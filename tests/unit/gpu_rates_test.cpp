@@ -120,18 +120,23 @@ TEST(GpuRates, WithoutThemAGpuIsPredictedByItsNameAlone) {
 
 // Here because it needs a device that is lost; program_gpu_test.cpp has devices that differ, or that do not compile a kernel.
 TEST(GpuCheck, ALostDeviceIsOneFindingAndTheRestIsLeftOut) {
-    const auto made = makeClDevice(ShaderFiles::developer(), {}, {.failAfter = 40});
-    if (!made && testing::mayLackOpenGl()) GTEST_SKIP() << made.error().message;
-    ASSERT_TRUE(made) << made.error().message;
-    std::vector<std::string> leftOut;
-    const std::vector<GpuFinding> found = checkDevice(**made, *makeCpu(), 1.0e300, leftOut);
-    ASSERT_EQ(found.size(), 1U) << "no differences of results that are none";
-    EXPECT_FALSE(found[0].passed());
-    EXPECT_EQ(found[0].what, "wcsph");
-    EXPECT_NE(found[0].error, "");
-    EXPECT_EQ(found[0].sentence(), "cl: wcsph: " + found[0].error);
-    EXPECT_EQ(leftOut.size(), 5U);
-    EXPECT_EQ((*made)->health().state, DeviceHealth::lost);
+    for (const bool late : {false, true}) {  // a dispatch is refused; or one is accepted, and its failure is found afterwards
+        SCOPED_TRACE(late);
+        ClOptions options;
+        (late ? options.eventFailsAfter : options.failAfter) = 40;
+        const auto made = makeClDevice(ShaderFiles::developer(), {}, options);
+        if (!made && testing::mayLackOpenGl()) GTEST_SKIP() << made.error().message;
+        ASSERT_TRUE(made) << made.error().message;
+        std::vector<std::string> leftOut;
+        const std::vector<GpuFinding> found = checkDevice(**made, *makeCpu(), 1.0e300, leftOut);
+        ASSERT_EQ(found.size(), 1U) << "no differences of results that are none";
+        EXPECT_FALSE(found[0].passed());
+        EXPECT_EQ(found[0].what, "wcsph");
+        EXPECT_NE(found[0].error, "");
+        EXPECT_EQ(found[0].sentence(), "cl: wcsph: " + found[0].error);
+        EXPECT_EQ(leftOut.size(), 5U);
+        EXPECT_EQ((*made)->health().state, DeviceHealth::lost);
+    }
 }
 
 }  // namespace

@@ -143,6 +143,7 @@ TEST(ProgramGpu, ARunThatEndsAtOnceLeavesTheNamesOfDevices) {
     EXPECT_EQ(outcome.code, 128 + SIGKILL) << outcome.err;
     const Json::Value gpu = readJson(json)["gpu"];
     EXPECT_FALSE(gpu["complete"].asBool());
+    EXPECT_EQ(gpu["checks"].size(), 0U) << "it was written before the first";
     EXPECT_EQ(gpu["devices"].size() + gpu["notMeasured"].size(), 2U) << "gl and cl";
     for (const Json::Value& device : gpu["devices"])
         for (const char* key : {"backend", "name", "driver"}) EXPECT_FALSE(device[key].asString().empty()) << key;

@@ -38,11 +38,20 @@ under_oclgrind() {
 }
 # The environments in which OpenGL is Mesa's, also beside another vendor's: tests fail if its name is another one than $renderer.
 mesa() { __EGL_VENDOR_LIBRARY_FILENAMES=/usr/share/glvnd/egl_vendor.d/50_mesa.json LIBGL_ALWAYS_SOFTWARE=1 RIVULET_EXPECT_RENDERER="$renderer" "$@"; }
+on_llvmpipe() { renderer='llvmpipe (LLVM' mesa env GALLIUM_DRIVER=llvmpipe "$@"; }
 # zink, on lavapipe or on the Vulkan driver of the file $icd.
 icd=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json
 renderer='zink (llvmpipe'
 on_zink() { mesa env GALLIUM_DRIVER=zink VK_ICD_FILENAMES="$icd" VK_DRIVER_FILES="$icd" "$@"; }
-gl_tests='*gl*:*Gl*:*Barriers*-*GlSharing*'
+gl_tests='*gl*:*Gl*:*Barriers*:*Pictures*-*GlSharing*'
+# What llvmpipe draws, to compare with: in $work/pictures.
+draw_on_llvmpipe() {
+    mkdir -p "$work/pictures"
+    on_llvmpipe env RIVULET_PICTURES_TO="$work/pictures" "$tests" --gtest_filter='*Pictures*' >"$work/pictures.log" 2>&1 && return
+    grep FAILED "$work/pictures.log"
+    echo "pictures on llvmpipe failed"
+    return 1
+}
 
 suite_oclgrind() {
     local status=0 world worlds
@@ -62,9 +71,10 @@ suite_oclgrind() {
 }
 suite_zink() {
     local status=0
-    on_zink "$tests" --gtest_filter="$gl_tests" >"$work/zink.log" 2>&1 || status=1
+    draw_on_llvmpipe || status=1
+    on_zink env RIVULET_PICTURES_LIKE="$work/pictures" "$tests" --gtest_filter="$gl_tests" >"$work/zink.log" 2>&1 || status=1
     on_zink "$parity" --gtest_filter="$gl_tests" >>"$work/zink.log" 2>&1 || status=1
-    grep -E 'FAILED|kernels in|tests ran|RIVULET_EXPECT' "$work/zink.log" | sort -u
+    grep -E 'FAILED|kernels in|^pictures?[: ]|tests ran|RIVULET_EXPECT' "$work/zink.log" | sort -u
     said "zink on $(basename "$icd" .json)" $status
 }
 suite_validation() {
@@ -77,9 +87,9 @@ khronos_validation.enables = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDA
 khronos_validation.enable_message_limit = false
 END
     on_zink env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation VK_LAYER_SETTINGS_PATH="$work" \
-        "$tests" --gtest_filter='*Barriers*:*SmallWorlds*gl' >"$work/validation.log" 2>&1
+        "$tests" --gtest_filter='*Barriers*:*SmallWorlds*gl:*Pictures*' >"$work/validation.log" 2>&1
     local status=$?
-    grep -E 'FAILED|kernels in|RIVULET_EXPECT' "$work/validation.log" | sort -u
+    grep -E 'FAILED|kernels in|^pictures:|RIVULET_EXPECT' "$work/validation.log" | sort -u
     grep -q BestPractices "$work/layer.log" || { echo "the validation layer reported nothing: is it there?"; status=1; }
     # Mesa 22.3's zink's own, in draws without colour targets: it sets the blending of none, and where a pipeline has it fixed.
     local own='VUID-vkCmdSetColorBlendEquationEXT-attachmentCount-arraylength|VUID-vkCmdDrawMultiEXT-None-02859.*DYNAMIC_STATE_COLOR_BLEND'

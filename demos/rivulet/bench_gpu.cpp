@@ -78,7 +78,7 @@ Json::Value jsonOf(const ExaminedGpu& e) {
     if (!e.measured) return v;
     Json::Value& r = v["rates"];
     r["bytesPerSecond"] = e.rates.bandwidth;
-    r["copiedBytes"] = e.rates.copied;
+    r["copiedBytes"] = static_cast<Json::UInt64>(e.rates.copied);
     r["arithmetic"] = e.rates.arithmetic;
     r["integer"] = e.rates.integer;
     r["special"] = e.rates.special;

@@ -87,7 +87,7 @@ struct CountedKernel {
     double step32 = 0;                     // operations of a thread where 32 go through the code in step
     double bytes = 0;                      // of memory, of a thread
     double longest = 0, longestLoads = 0;  // operations and loads of the longest thread
-    double sectors = 0, waves = 1;         // as in kernels.csv
+    double sectors = 0, waves = 1;         // as in kernels.csv; waves: 1 also if it is not known
     double operations() const;
 };
 std::vector<CountedKernel> countedKernels();

@@ -108,7 +108,7 @@ std::string offBy(const std::vector<GpuSpec>& gpus) {
     if (!frames.empty()) {
         const auto by = [](const MeasuredFrame& a, const MeasuredFrame& b) { return a.error() < b.error(); };
         const auto [least, most] = std::minmax_element(frames.begin(), frames.end(), by);
-        off += fmt::format(" On the one GPU that was measured simulating, an {}, predictions are off by {} to {}.", least->gpu,
+        off += fmt::format(" Simulated frames were measured on an {} alone: predictions there are off by {} to {}.", least->gpu,
                            percent(least->error()), percent(most->error()));
     }
     std::vector<std::string> predicted, measured;
@@ -121,7 +121,7 @@ std::string offBy(const std::vector<GpuSpec>& gpus) {
     }
     if (drawer != nullptr)
         off += fmt::format(
-            " Drawing was compared with an {} alone, which draws with {:.0f} of its {:.0f} SMs: pictures predicted to take {} "
+            " Pictures were measured on an {} alone, which draws with {:.0f} of its {:.0f} SMs: pictures predicted to take {} "
             "ms took {} ms.",
             drawer->name, drawer->drawUnits, drawer->units, listOf(predicted), listOf(measured));
     return off + " See [Against a GPU](#against-a-gpu).";
@@ -130,7 +130,8 @@ std::string offBy(const std::vector<GpuSpec>& gpus) {
 std::string predictions(const std::vector<GpuSpec>& gpus) {
     std::string page =
         "## Predicted frames\n\nms for a frame of 1/60 s of dam_break with default settings and the method named, and for a picture of it, "
-        "1920x1080, quality fine. The numbers in the first row are those of the particles.\n\n";
+        "1920x1080, quality fine. The numbers in the first row are those of the particles. An H100 and an H200 can draw with 4 of their "
+        "132 SMs alone.\n\n";
     std::vector<std::string> columns = {"GPU"};
     for (const double particles : kParticles) {
         for (const char* method : kMethods) columns.push_back(fmt::format("{}, {}", method, withCommas(particles)));
@@ -309,7 +310,7 @@ std::string errorsHere(const DeviceTables& t) {
     std::string page = fmt::format(
         "{}\n\nThe devices of the machine that measured for this page are software: llvmpipe (OpenGL, `gl`) and PoCL (OpenCL, `cl`). Tiny "
         "kernels (`shaders/bench`) measured their rates; the model was not fitted to the frames. Times are processor time over the number "
-        "of threads: ms of a substep, or of a picture. Substeps: of a step as it was asked for; iterations: of the pressure solver, in a "
+        "of threads: ms of a substep, or of a picture. Substeps: those of a step; iterations: those of the pressure solver in a "
         "substep; both as measured. The prediction follows from these, from the rates and from the counts. The error is the predicted time "
         "over the measured one, less 1.\n\n{}{}\n\n{}",
         kErrorsHere, kMeasuredOn, t.machine, headOf(kRates));
@@ -411,6 +412,7 @@ std::string everyKernel(const std::vector<GpuSpec>& gpus) {
     for (const std::vector<std::string_view>& row : large.rows) predicted.insert(row[large.column("kernel")]);
     for (const CountedKernel& k : all)
         if (!predicted.contains(k.name)) others.insert(k.name);
+    const ReferenceRows notCounted = rowsOf(gpuTables(), "not_counted");
     const auto nameOf = [](const CountedKernel& k) {
         return (k.variant == "-" ? k.name : k.name + "; " + k.variant) + (k.plain ? " (plain)" : "");
     };
@@ -449,8 +451,11 @@ std::string everyKernel(const std::vector<GpuSpec>& gpus) {
         }
         if (k.groups == 1 && most > 10) page += row + "\n";
     }
-    return page +
-           "\nWaits at barriers come on top: a thread waits there for the slowest of its group, which may be another one each time.\n";
+    page += "\nWaits at barriers come on top: a thread waits there for the slowest of its group, which may be another one each time.\n";
+    page += "\nNot counted, and why:\n\n" + headOf({"kernel", "reason"});
+    for (const std::vector<std::string_view>& row : notCounted.rows)
+        page += fmt::format("| {} | {} |\n", row[notCounted.column("kernel")], row[notCounted.column("reason")]);
+    return page;
 }
 
 constexpr const char* kModel = R"(## The model
@@ -495,7 +500,8 @@ drawing pass takes the sum of its operations, written fragments, and filtered an
 - Operations of a fragment shader are those of its compiled text, each once, times the counted reads of textures over the reads in the text. Loops
   that read no texture count once.
 - Occupancy (column `waves` of `kernels.csv`: the share of the threads that a GPU holds at once) is that of one GPU, NAVI21 (RX 6800), as Mesa's compiler
-  allots registers there. It stands for NVIDIA's and Intel's GPUs too, which have other register files and compilers.
+  allots registers there. It stands for NVIDIA's and Intel's GPUs too, which have other register files and compilers. A variant that `tests/gpus` does not
+  compile has an empty cell, and is taken as full.
 - Latencies of AMD's and Intel's GPUs are estimates from measurements that others published; the vendors publish none.
 )";
 

@@ -36,7 +36,7 @@ struct SeriesRow {
     int particles = 0;
     double stepMs = 0, predictedStepMs = 0;                                   // of a substep; predictions are 0 without a model
     double frameMs = 0, predictedFrameMs = 0;                                 // of 1/60 s, with the substeps and iterations of frames.csv
-    double substeps = 0;                                                      // of a step as it was asked for
+    double substeps = 0;                                                      // of a step
     double iterations = 0;                                                    // of the pressure solver, in a substep
     int warmSteps = 0;                                                        // before those that are measured: 8, if there is time
     double drawMs = 0, predictedDrawMs = 0;                                   // of a picture; 0: not drawn

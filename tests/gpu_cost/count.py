@@ -72,8 +72,9 @@ def occupancy():
 
 
 def waves_of(shares, row):
-    """Of the variants that were counted: their waves differ by half and more. The least of them, if there are several. 1 if tests/gpus has none of them."""
-    return f"{min((shares[row['kernel'], v] for v in row['variants'].split() if (row['kernel'], v) in shares), default=1):.3g}"
+    """Of the variants that were counted: their waves differ by half and more. The least of them, if there are several. Empty if tests/gpus has none of them."""
+    known = [shares[row["kernel"], v] for v in row["variants"].split() if (row["kernel"], v) in shares]
+    return f"{min(known):.3g}" if known else ""
 
 
 def count_kernels(program, to, spacings, methods, _worlds):

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "fluid/session/reference_data.h"
 #include "fluid/validate/gpu_cost.h"
@@ -30,21 +31,66 @@ TEST(GpuCost, TablesNameKernelsThatExist) {
         methods.insert(row[table.column("method")]);
         EXPECT_TRUE(std::filesystem::exists(RIVULET_SOURCE_DIR "/shaders/" + std::string(row[table.column("kernel")]) + ".kernel"))
             << row[table.column("kernel")];
-        // Threads in step take at least as long as on average, wider groups longer, and none longer than the longest.
-        double operations = 0;
-        for (const char* kind :
-             {"arithmetic", "special", "integers", "branches", "uniforms", "loads", "stores", "atomics", "shared", "barriers"})
-            operations += numberIn(row[table.column(kind)]);
-        const double step8 = numberIn(row[table.column("step8")]), step64 = numberIn(row[table.column("step64")]);
-        EXPECT_GE(step8, 0.999 * operations);
-        EXPECT_GE(numberIn(row[table.column("step32")]), 0.999 * step8);
-        EXPECT_GE(step64, 0.999 * numberIn(row[table.column("step32")]));
-        EXPECT_GE(numberIn(row[table.column("longest")]), 0.999 * operations);
         // A dispatch touches no more sectors than its accesses have bytes, rounded up to whole sectors.
         EXPECT_LE(numberIn(row[table.column("read_bytes")]),
                   32 * (numberIn(row[table.column("loads")]) + numberIn(row[table.column("atomics")])) + 64);
     }
     EXPECT_EQ(methods, (std::set<std::string_view>{"wcsph", "pbf", "dfsph"}));
+}
+
+// Counts are rounded to four digits.
+constexpr double kRounded = 1.002;
+
+// What holds for any code. Threads in step have no fewer operations than alone, and wider groups no fewer than narrower ones. They have no
+// more than one after the other, and those of code without a branch, which all go through together, have those of one thread. The mean is
+// none of more than the longest thread.
+void expectPossible(const ReferenceRows& table, const std::vector<std::string_view>& row, const std::string& what) {
+    const auto number = [&](const char* column) { return numberIn(row[table.column(column)]); };
+    double operations = 0;
+    for (const char* kind :
+         {"arithmetic", "special", "integers", "branches", "uniforms", "loads", "stores", "atomics", "shared", "barriers"})
+        operations += number(kind);
+    EXPECT_GE(number("longest") * kRounded, operations) << what;
+    EXPECT_GE(number("longest"), number("longest_loads")) << what;
+    double narrower = operations;
+    for (const auto& [column, width] : {std::pair("step8", 8.0), std::pair("step32", 32.0), std::pair("step64", 64.0)}) {
+        EXPECT_GE(number(column) * kRounded, narrower) << what << ", " << column;
+        EXPECT_LE(number(column), width * operations * kRounded) << what << ", " << column;
+        if (number("branches") == 0) EXPECT_LE(number(column), operations * kRounded) << what << ", " << column;
+        narrower = number(column);
+    }
+}
+
+TEST(GpuCost, StepsAreThoseThatThreadsCanTake) {
+    size_t rows = 0;
+    for (const char* name : {"kernels", "kernels_small"}) {
+        const ReferenceRows table = rowsOf(gpuTables(), name);
+        for (const auto& row : table.rows) {
+            expectPossible(table, row,
+                           fmt::format("{}: {} {}, {}", name, row[table.column("kernel")], row[table.column("variants")], row[0]));
+            ++rows;
+        }
+    }
+    EXPECT_GT(rows, 300U);
+}
+
+// The share of waves that registers allow is known where tests/gpus has the variant.
+TEST(GpuCost, WavesAreAShareOrNotKnown) {
+    std::map<std::string, size_t> known, empty;
+    for (const char* name : {"kernels", "kernels_before", "kernels_small"}) {
+        const ReferenceRows table = rowsOf(gpuTables(), name);
+        for (const auto& row : table.rows) {
+            const std::string_view cell = row[table.column("waves")];
+            ++(cell.empty() ? empty : known)[name];
+            if (cell.empty()) continue;
+            EXPECT_GT(numberIn(cell), 0) << name << ": " << row[table.column("kernel")];
+            EXPECT_LE(numberIn(cell), 1) << name << ": " << row[table.column("kernel")];
+        }
+    }
+    EXPECT_EQ(empty["kernels"], 0U);
+    EXPECT_GT(empty["kernels_small"], 0U);
+    EXPECT_GT(known["kernels_small"], 3 * empty["kernels_small"]);
+    for (const CountedKernel& k : countedKernels()) EXPECT_GT(k.waves, 0) << k.name;  // the model takes 1 then
 }
 
 TEST(GpuCost, HalfOfTheBandwidthDoublesWhatIsLimitedByMemory) {
@@ -155,18 +201,17 @@ TEST(GpuCost, AGpuIsFoundByItsNameOrItsBandwidth) {
     EXPECT_EQ(unknown.gpu.name, "GTX 1060");
 }
 
-// Of the kernels in none of the tables. map_tiles is the cpu's form of map_quads, and those of bench measure a device; the others are run
-// by no small world (tests/races/small_worlds_test.cpp).
-const std::set<std::string> kNotCounted = {"bench/rate_copy",         "bench/rate_math",      "flow/map_tiles",
-                                           "fluid/grid/bounds",       "fluid/grid/cell_of",   "fluid/sleep/sleep_disturb",
-                                           "fluid/sleep/sleep_drawn", "fluid/sources/forget", "fluid/surface/ellipsoids_free",
-                                           "fluid/surface/foam_drawn"};
-
 TEST(GpuCost, EveryKernelIsCounted) {
     std::set<std::string> counted;
     for (const char* name : {"kernels", "kernels_small"}) {
         const ReferenceRows table = rowsOf(gpuTables(), name);
         for (const auto& row : table.rows) counted.emplace(row[table.column("kernel")]);
+    }
+    std::set<std::string> notCounted;
+    const ReferenceRows reasons = rowsOf(gpuTables(), "not_counted");
+    for (const auto& row : reasons.rows) {
+        notCounted.emplace(row[reasons.column("kernel")]);
+        EXPECT_FALSE(row[reasons.column("reason")].empty()) << row[0];
     }
     const std::filesystem::path shaders = RIVULET_SOURCE_DIR "/shaders";
     std::set<std::string> all;
@@ -175,9 +220,10 @@ TEST(GpuCost, EveryKernelIsCounted) {
             all.insert(std::filesystem::relative(file.path(), shaders).replace_extension().generic_string());
     EXPECT_GT(all.size(), 140U);
     for (const std::string& kernel : all)
-        EXPECT_NE(counted.contains(kernel), kNotCounted.contains(kernel))
-            << kernel << " is in no table (python3 tests/gpu_cost/count.py small), or need no longer be in kNotCounted";
-    for (const std::string& kernel : counted) EXPECT_TRUE(all.contains(kernel)) << kernel << " is no kernel any more";
+        EXPECT_NE(counted.contains(kernel), notCounted.contains(kernel))
+            << kernel << " is in no table (python3 tests/gpu_cost/count.py small), or need no longer be in not_counted.csv";
+    for (const std::set<std::string>& listed : {counted, notCounted})
+        for (const std::string& kernel : listed) EXPECT_TRUE(all.contains(kernel)) << kernel << " is no kernel any more";
 }
 
 TEST(GpuCost, ADispatchOfOneGroupTakesItsLongestThread) {
@@ -186,10 +232,6 @@ TEST(GpuCost, ADispatchOfOneGroupTakesItsLongestThread) {
     for (const CountedKernel& k : countedKernels()) {
         EXPECT_GT(k.threads, 0) << k.name;
         EXPECT_GE(k.threads, k.groups) << k.name;
-        EXPECT_GE(k.longest, 0.999 * k.operations()) << k.name;
-        EXPECT_GE(k.step32, 0.999 * k.operations()) << k.name;
-        EXPECT_GT(k.waves, 0) << k.name;
-        EXPECT_LE(k.waves, 1) << k.name;
         for (const GpuSpec& gpu : all) {
             const double ms = predictDispatch(gpu, k);
             EXPECT_GE(ms, 1000 * (gpu.launch + k.longest * gpu.operationLatency)) << k.name;
@@ -253,7 +295,8 @@ TEST(GpuCostPage, ErrorsAreThoseOfTheModelAndBelowThirtyPercentOnTheDevicesHere)
         const bool result = row.size() == 8, pass = row.size() == 6;
         if ((!result && !pass) || row.back().find('%') == std::string::npos) continue;
         const std::string of = row[0] + " " + row[1];
-        const double error = errorOf(row), predicted = numberOf(row[row.size() - 2]);
+        errorOf(row);
+        const double predicted = numberOf(row[row.size() - 2]);
         double model = 0;
         if (result) {  // the results come before their passes
             const double substeps = row[1] == "picture" ? 1 : numberOf(row[3]);
@@ -264,7 +307,7 @@ TEST(GpuCostPage, ErrorsAreThoseOfTheModelAndBelowThirtyPercentOnTheDevicesHere)
                                        : predictSteps(gpu, row[1], numberOf(row[2]), {substeps, numberOf(row[4])});
             for (PassCost& each : cost.passes) each.ms /= substeps;
             model = cost.ms();
-            EXPECT_LE(std::abs(error), 30) << of;
+            EXPECT_LT(std::abs(predicted / numberOf(row[5]) - 1), 0.3) << of;
             ++results;
         } else {
             for (const PassCost& each : costs[of].passes)

@@ -64,7 +64,7 @@ std::vector<Picture> pictures() {
         {"moving_solid", "paddle_wheel", {"fluid.spacing=0.06", "fluid.method=dfsph"}, 2},
         {"sheet", "waving_sheet", {"fluid.spacing=0.08", "colliders.0.resolution=24"}, 2},
         {"bodies", "rubber_ducks", {"fluid.spacing=0.08", "fluid.fixedStep=0.0041666"}, 2},
-        {"wet_body", "", with({"fluid.wetness.on=true"}, kFoams), 6, "gl", true},
+        {"wet_body", "", with({"fluid.wetness.on=true"}, kFoams), 6},
         {"sky", "fountain", {"fluid.spacing=0.03"}, 2},
         {"textures", "koi", {"fluid.spacing=0.05", "colliders.1.resolution=48"}, 2},
         {"glass", "glass", with({"fluid.spacing=0.006"}, kFoams), 8},

@@ -128,13 +128,15 @@ struct DispatchCost {
     const char* bound = "";
 };
 DispatchCost dispatchOf(const GpuSpec& gpu, const KernelWork& w) {
+    const double inStep = w.inStep(gpu.step);
     double perThread = 0, operations = 0, slots = 0;
     for (size_t k = 0; k < kGpuOps; ++k) {
-        perThread += w.count[k] * gpu.seconds[k];
+        const bool moves = GpuOp(k) >= GpuOp::load && GpuOp(k) <= GpuOp::shared;
+        const double inTurn = moves ? 1 - gpu.loadsInStep : 0;  // the share that each thread takes for itself
+        perThread += w.count[k] * gpu.seconds[k] * (inTurn + (1 - inTurn) * inStep);
         operations += w.count[k];
         slots += w.count[k] * kSlots[k];
     }
-    const double inStep = w.inStep(gpu.step);
     const double loads = w.count[static_cast<size_t>(GpuOp::load)] + w.count[static_cast<size_t>(GpuOp::atomic)];
     const double wait = (slots * gpu.operationLatency + loads * gpu.loadLatency) * inStep;
     const double longest = operations > 0 ? w.longest * slots / operations : 0;  // slots: of the mix of all threads
@@ -142,7 +144,7 @@ DispatchCost dispatchOf(const GpuSpec& gpu, const KernelWork& w) {
         double seconds;
         const char* bound;
     } limits[] = {
-        {w.threads * perThread * inStep, "operations"},
+        {w.threads * perThread, "operations"},
         {gpu.cache > 0 ? w.threads * w.sectors * 32 / gpu.cache : 0, "cache"},
         {w.threads * w.bytes / gpu.bandwidth, "memory"},
         {gpu.resident > 0 ? w.threads * wait / (gpu.resident * w.waves) : 0, "waits"},
@@ -238,6 +240,7 @@ GpuSpec measuredGpu(const std::string& name, const DeviceRates& rates, int step)
     g.seconds = {arithmetic, 1 / rates.special, integer, branch, integer, load, load, load, load, load};
     g.bandwidth = rates.bandwidth;
     g.launch = rates.dispatchMs / 1000;
+    g.loadsInStep = rates.loadsInStep;
     if (rates.fragments > 0) {
         g.fragmentSeconds = 1 / rates.fragments;
         g.filteredSeconds = 1 / rates.filtered;

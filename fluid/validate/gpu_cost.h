@@ -24,6 +24,7 @@ struct GpuSpec {
     std::string name;
     int step = 32;                          // threads that run in step: 1, 8, 32 or 64
     std::array<double, kGpuOps> seconds{};  // of an operation of one thread, if the whole device is busy
+    double loadsInStep = 1;                 // share of a load's or store's time that threads in step take for each other's, too
     double bandwidth = 0;                   // bytes/s, memory
     double cache = 0;                       // bytes/s, the first cache, in sectors of 32 bytes; 0: not a limit
     double launch = 0;                      // s, a dispatch

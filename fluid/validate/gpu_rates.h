@@ -11,18 +11,19 @@ namespace rivulet {
 
 // Of the whole device, all of it busy.
 struct DeviceRates {
-    double bandwidth = 0;   // bytes/s, read and written together
-    double arithmetic = 0;  // operations/s: (x + a) * b is two, and cannot be fused
-    double integer = 0;     // operations/s
-    double special = 0;     // square roots/s
-    double loads = 0;       // vec4/s, from a few elements that every cache holds
-    double rounds = 0;      // rounds of a loop/s: its count, comparison and branch
-    double dispatchMs = 0;  // ms of a dispatch of one work group
-    double fragments = 0;   // fragments/s of a target of 16-bit floats, of a shader that does nothing; gl alone, otherwise 0
-    double filtered = 0;    // reads/s of a texture between its texels, four channels of 16 bits; gl alone
-    double fetches = 0;     // reads/s of a texel of one channel; gl alone
-    double copied = 0;      // bytes of the buffer that was copied for `bandwidth`; caches hold a small one
-    double seconds = 0;     // that the measurement took
+    double bandwidth = 0;    // bytes/s, read and written together
+    double arithmetic = 0;   // operations/s: (x + a) * b is two, and cannot be fused
+    double integer = 0;      // operations/s
+    double special = 0;      // square roots/s
+    double loads = 0;        // loads/s, from a few elements that every cache holds, all threads at once
+    double loadsInStep = 1;  // share of a load's time that a thread in step takes for a load of others: 1 on a GPU
+    double rounds = 0;       // rounds of a loop/s: its count, comparison and branch
+    double dispatchMs = 0;   // ms of a dispatch of one work group
+    double fragments = 0;    // fragments/s of a target of 16-bit floats, of a shader that does nothing; gl alone, otherwise 0
+    double filtered = 0;     // reads/s of a texture between its texels, four channels of 16 bits; gl alone
+    double fetches = 0;      // reads/s of a texel of one channel; gl alone
+    double copied = 0;       // bytes of the buffer that was copied for `bandwidth`; caches hold a small one
+    double seconds = 0;      // that the measurement took
 };
 
 // The time of a device, s: on a GPU of the wall. A device that is software: processor time of this process over the number of threads.

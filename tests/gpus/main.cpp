@@ -253,7 +253,7 @@ int listRest(const std::string& list) {
     for (const std::string& path : shaderFiles(".kernel"))
         if (!named.contains(path) && !compiled.contains(path) && path != "bench/rate_math") rest.insert(path);
     if (!named.contains("bench/rate_math"))  // as fluid/validate/gpu_rates.cpp asks for it
-        for (int kind = 0; kind < 4; ++kind)
+        for (int kind = 0; kind < 5; ++kind)
             for (int operations = 1; operations <= 2; ++operations)
                 rest.insert(fmt::format("bench/rate_math;KIND={};OPERATIONS={}", kind, operations));
     for (const std::string& line : rest) fmt::print("{}\n", line);

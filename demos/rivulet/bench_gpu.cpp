@@ -312,7 +312,7 @@ Result<std::vector<ExaminedGpu>> examineAll(const BenchContext& context, const G
     return gpus;
 }
 
-// Nothing can be measured: an error only for a person who named this case.
+// Without OpenGL and OpenCL. An error if the person named this case; in a run of all cases a notice, and the other cases follow.
 Status withoutDevices(const BenchContext& context, const GpuDevices& devices, Json::Value& result) {
     std::vector<std::string> why;
     for (const GpuDevices::Absent& absent : devices.absent) why.push_back(fmt::format("{}: {}", absent.backend, absent.why));

@@ -82,7 +82,7 @@ Result<std::optional<DeviceRates>> measureRates(Device& device, double until) {
     const Result<Kernel> copy = device.kernel("bench/rate_copy");
     if (!copy) return copy.error();
     std::array<Kernel, 10> math;
-    for (int kind = 0; kind < 5; ++kind)
+    for (int kind = 0; kind < (software ? 5 : 4); ++kind)  // the fifth, loads by one thread in eight, tells nothing of a GPU
         for (int operations = 1; operations <= 2; ++operations) {
             if (late()) return none;
             const Define defines[] = {{"KIND", std::to_string(kind)}, {"OPERATIONS", std::to_string(operations)}};
@@ -118,14 +118,14 @@ Result<std::optional<DeviceRates>> measureRates(Device& device, double until) {
         const double eight = round[1] > 1.05 * round[0] ? round[1] - round[0] : round[0];
         return Loop{round[0], std::max(eight / 8, 1.0e-16)};
     };
-    const Loop arithmetic = loop(0), integer = loop(1), special = loop(2), load = loop(3), alone = loop(4);
+    const Loop arithmetic = loop(0), integer = loop(1), special = loop(2), load = loop(3);
     rates.arithmetic = 2 / arithmetic.operation;  // (x + a) * b
     rates.integer = 2 / integer.operation;        // x * 3 ^ a
     rates.special = 1 / special.operation;
     // A load comes with one addition of floats and two of integers.
     rates.loads = 1 / std::max(load.operation - 1 / rates.arithmetic - 2 / rates.integer, 0.1 * load.operation);
     // Where one thread in eight loads, eight take what they take in step, and that one its own part of the time: s + (1 - s) / 8.
-    rates.loadsInStep = std::clamp((8 * alone.operation / load.operation - 1) / 7, 0.0, 1.0);
+    if (software) rates.loadsInStep = std::clamp((8 * loop(4).operation / load.operation - 1) / 7, 0.0, 1.0);
     rates.rounds = 1 / std::max(arithmetic.perRound - 8 * arithmetic.operation, 0.1 * arithmetic.perRound);
     if (late()) return none;
     if (device.backend() == Backend::gl) {

@@ -56,68 +56,79 @@ double sumOf(const ReferenceRows& table, const std::vector<std::string_view>& ro
     return sum;
 }
 
-// The kernels of a step with `particles`. What a thread does depends on the share of particles at walls and surfaces, which is proportional
-// to the inverse edge of the water: counts at several sizes are extended along it.
+// A kernel as it was counted, with the smallest number of particles first.
+struct CountedSizes {
+    const ReferenceRows& table;
+    std::vector<const std::vector<std::string_view>*> rows;
+    double number(size_t row, const char* column) const { return numberIn((*rows[row])[table.column(column)]); }
+    const std::vector<std::string_view>& last() const { return *rows.back(); }
+};
+
+// What a dispatch does with `particles`. Of a kernel with a thread for each particle: by the particle, for the last group of threads is not
+// full. What such a thread does depends on the share of particles at walls and surfaces, which is proportional to the inverse edge of the
+// water, and counts are extended along it. Other dispatches are of a fixed number of threads, which share all particles or do something
+// once, or of cells: what they do is a line over the number of particles.
+KernelWork workOf(const std::string& name, const CountedSizes& sizes, double particles) {
+    constexpr double kLargestGroup = 256;
+    bool each = true, fixed = sizes.rows.size() > 1;  // of one size alone it is not known: then each dispatch grows with the particles
+    for (size_t k = 0; k < sizes.rows.size(); ++k) {
+        const double threads = sizes.number(k, "threads"), beyond = threads - sizes.number(k, "particles");
+        each = each && beyond >= 0 && beyond < kLargestGroup;
+        fixed = fixed && threads == sizes.number(0, "threads");
+    }
+    each = each && !fixed;
+    const auto at = [&](const char* column, bool over) {  // over: the number of particles, not the inverse edge
+        Line line;
+        for (size_t k = 0; k < sizes.rows.size(); ++k) {
+            const double count = sizes.number(k, "particles"), share = each ? sizes.number(k, "threads") / count : 1;
+            line.add(over ? count : 1 / std::cbrt(count), sizes.number(k, column) * share);
+        }
+        return std::max(line.at(over ? particles : 1 / std::cbrt(std::max(particles, 1.0))), 0.0);
+    };
+    const auto cell = [&](const char* column) { return sizes.last()[sizes.table.column(column)]; };
+    KernelWork w;
+    w.name = name;
+    w.per = cell("per");
+    w.calls = numberIn(cell("calls"));
+    w.frameCalls = numberIn(cell("frame_calls"));
+    const double first = sizes.number(0, "threads");
+    w.threads = each                    ? particles
+                : fixed                 ? first
+                : sizes.rows.size() > 1 ? at("threads", true)
+                                        : first * particles / sizes.number(0, "particles");
+    double operations = 0;
+    for (size_t k = 0; k < kGpuOps; ++k) operations += w.count[k] = at(kColumns[k], fixed);
+    // In step over alone: of the largest world counted, in which more threads are at walls than in larger ones.
+    const double alone = sumOf(sizes.table, sizes.last());
+    const auto ratio = [&](const char* column) { return alone > 0 ? std::max(numberIn(cell(column)) / alone, 1.0) : 1.0; };
+    w.step8 = ratio("step8");
+    w.step32 = ratio("step32");
+    w.step64 = ratio("step64");
+    const double grows = fixed && alone > 0 ? operations / alone : 1;
+    for (size_t k = 0; k < sizes.rows.size(); ++k) {
+        w.longest = std::max(w.longest, grows * sizes.number(k, "longest"));
+        w.longestLoads = std::max(w.longestLoads, grows * sizes.number(k, "longest_loads"));
+    }
+    w.sectors = at("sectors", fixed);
+    w.bytes = at("read_bytes", fixed) + at("written_bytes", fixed);
+    w.waves = std::clamp(numberIn(cell("waves")), 0.0, 1.0);
+    if (w.waves == 0) w.waves = 1;  // not known
+    return w;
+}
+
+// The kernels of a step with `particles`.
 std::vector<KernelWork> kernelsOf(std::string_view counts, std::string_view method, double particles) {
     const ReferenceRows table = rowsOf(gpuTables(), counts);
-    struct Samples {
-        std::map<std::string, Line, std::less<>> lines;
-        std::set<double> threads;
-        double longest = 0, longestLoads = 0, largest = 0;
-        double smallest = 1.0e30, fewest = 0;  // fewest: operations of a thread with the smallest number of particles
-        const std::vector<std::string_view>* last = nullptr;
-    };
-    const size_t ofMethod = table.column("method"), ofKernel = table.column("kernel"), ofParticles = table.column("particles"),
-                 ofThreads = table.column("threads"), ofLongest = table.column("longest"), ofLoads = table.column("longest_loads");
-    constexpr const char* kFitted[] = {"sectors", "read_bytes", "written_bytes"};
-    std::map<std::string, Samples, std::less<>> kernels;
-    for (const std::vector<std::string_view>& row : table.rows) {
-        if (row[ofMethod] != method) continue;
-        Samples& s = kernels[std::string(row[ofKernel])];
-        const double count = numberIn(row[ofParticles]), x = 1 / std::cbrt(count), threads = numberIn(row[ofThreads]);
-        const auto take = [&](const char* column) { s.lines[column].add(x, numberIn(row[table.column(column)])); };
-        for (const char* column : kColumns) take(column);
-        for (const char* column : kFitted) take(column);
-        s.lines["threads"].add(x, threads / count);
-        s.threads.insert(threads);
-        s.longest = std::max(s.longest, numberIn(row[ofLongest]));
-        s.longestLoads = std::max(s.longestLoads, numberIn(row[ofLoads]));
-        if (count >= s.largest) s.largest = count, s.last = &row;
-        if (count < s.smallest) s.smallest = count, s.fewest = sumOf(table, row);
-    }
-    const double x = 1 / std::cbrt(std::max(particles, 1.0));
+    std::map<std::string, CountedSizes, std::less<>> kernels;
+    for (const std::vector<std::string_view>& row : table.rows)
+        if (row[table.column("method")] == method)
+            kernels.try_emplace(std::string(row[table.column("kernel")]), CountedSizes{table, {}}).first->second.rows.push_back(&row);
     std::vector<KernelWork> all;
     all.reserve(kernels.size());
-    for (const auto& [name, s] : kernels) {
-        // A fixed number of threads that share all particles (sums), or does something once: what each of them does grows with their
-        // number.
-        const bool fixed = s.threads.size() == 1 && s.largest > s.smallest;
-        const double grows = fixed && sumOf(table, *s.last) > 1.2 * s.fewest ? particles / s.largest : 1;
-        const auto at = [&, &s = s](const char* column) {
-            return fixed ? grows * numberIn((*s.last)[table.column(column)]) : std::max(s.lines.find(column)->second.at(x), 0.0);
-        };
-        KernelWork w;
-        w.name = name;
-        w.per = (*s.last)[table.column("per")];
-        w.calls = numberIn((*s.last)[table.column("calls")]);
-        w.frameCalls = numberIn((*s.last)[table.column("frame_calls")]);
-        w.threads = fixed ? *s.threads.begin() : at("threads") * particles;
-        for (size_t k = 0; k < kGpuOps; ++k) w.count[k] = at(kColumns[k]);
-        // In step over alone: of the largest world counted, in which more threads are at walls than in larger ones.
-        const double alone = sumOf(table, *s.last);
-        const auto ratio = [&, &s = s](const char* column) {
-            return alone > 0 ? std::max(numberIn((*s.last)[table.column(column)]) / alone, 1.0) : 1.0;
-        };
-        w.step8 = ratio("step8");
-        w.step32 = ratio("step32");
-        w.step64 = ratio("step64");
-        w.longest = grows * s.longest;
-        w.longestLoads = grows * s.longestLoads;
-        w.sectors = at("sectors");
-        w.bytes = at("read_bytes") + at("written_bytes");
-        w.waves = std::clamp(numberIn((*s.last)[table.column("waves")]), 0.0, 1.0);
-        if (w.waves == 0) w.waves = 1;
-        all.push_back(std::move(w));
+    for (auto& [name, sizes] : kernels) {
+        const size_t column = table.column("particles");
+        std::ranges::sort(sizes.rows, {}, [column](const auto* row) { return numberIn((*row)[column]); });
+        all.push_back(workOf(name, sizes, particles));
     }
     return all;
 }

@@ -22,9 +22,9 @@ constexpr size_t kGpuOps = 10;
 // A device of the model.
 struct GpuSpec {
     std::string name;
-    int step = 32;                          // threads that run in step: 1, 8, 32 or 64
+    int step = 32;                          // threads in lockstep: 1, 8, 32 or 64
     std::array<double, kGpuOps> seconds{};  // of an operation of one thread, if the whole device is busy
-    double loadsInStep = 1;                 // share of a load's or store's time that threads in step take for each other's, too
+    double loadsInStep = 1;                 // share of the time of a load or store for which threads of the group that skip it wait too
     double bandwidth = 0;                   // bytes/s, memory
     double cache = 0;                       // bytes/s, the first cache, in sectors of 32 bytes; 0: not a limit
     double launch = 0;                      // s, a dispatch
@@ -85,7 +85,7 @@ struct CountedKernel {
     std::string name, variant;             // "flow/push", "FILM=1"; "-": without defines
     double threads = 0, groups = 0;        // of a dispatch
     std::array<double, kGpuOps> count{};   // operations of a thread
-    double step32 = 0;                     // operations of a thread where 32 go through the code in step
+    double step32 = 0;                     // operations of a thread, 32 in lockstep
     double bytes = 0;                      // of memory, of a thread
     double longest = 0, longestLoads = 0;  // operations and loads of the longest thread
     double sectors = 0, waves = 1;         // as in kernels.csv; waves: 1 also if it is not known

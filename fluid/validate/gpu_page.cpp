@@ -104,8 +104,8 @@ std::string listOf(const std::vector<std::string>& words) {
     return list;
 }
 
-// What the GPUs that were measured say of predictions for others.
-std::string offBy(const std::vector<GpuSpec>& gpus) {
+// What the devices that were measured say of predictions for others. `here`: errors of simulated frames on the devices of the page.
+std::string offBy(const std::vector<GpuSpec>& gpus, const std::vector<double>& here) {
     const std::vector<MeasuredFrame> frames = comparisons(gpus);
     std::string off = " No such GPU was measured.";
     if (!frames.empty()) {
@@ -124,17 +124,23 @@ std::string offBy(const std::vector<GpuSpec>& gpus) {
     }
     if (drawer != nullptr)
         off += fmt::format(
-            " Pictures were measured on an {} alone, which draws with {:.0f} of its {:.0f} SMs: pictures predicted to take {} "
-            "ms took {} ms.",
+            " Pictures were measured on an {} alone, which draws with only {:.0f} of its {:.0f} multiprocessors: pictures predicted to "
+            "take "
+            "{} ms took {} ms.",
             drawer->name, drawer->drawUnits, drawer->units, listOf(predicted), listOf(measured));
-    return off + " See [Against a GPU](#against-a-gpu).";
+    off += " See [Against a GPU](#against-a-gpu).";
+    if (here.empty()) return off;
+    const auto [least, most] = std::ranges::minmax(here);
+    off += fmt::format(" For simulated frames on devices that are software, the same model without calibration is off by {} to {}: see ",
+                       percent(least), percent(most));
+    return off + "[Error on the devices here](#error-on-the-devices-here).";
 }
 
-std::string predictions(const std::vector<GpuSpec>& gpus) {
+std::string predictions(const std::vector<GpuSpec>& gpus, const std::vector<double>& here) {
     std::string page =
         "## Predicted frames\n\nms for a frame of 1/60 s of dam_break with default settings and the method named, and for a picture of it, "
-        "1920x1080, quality fine. The numbers in the first row are those of the particles. An H100 and an H200 can draw with 4 of their "
-        "132 SMs alone.\n\n";
+        "1920x1080, quality fine. The numbers in the first row are those of the particles. Of the 132 multiprocessors of an H100, and "
+        "of an H200, only 4 can run drawing shaders.\n\n";
     std::vector<std::string> columns = {"GPU"};
     for (const double particles : kParticles) {
         for (const char* method : kMethods) columns.push_back(fmt::format("{}, {}", method, withCommas(particles)));
@@ -150,7 +156,7 @@ std::string predictions(const std::vector<GpuSpec>& gpus) {
         }
         page += "\n";
     }
-    const std::string off = offBy(gpus);
+    const std::string off = offBy(gpus, here);
     for (const char* name : kShown)
         if (const GpuSpec* gpu = find(gpus, name)) {
             const double steps = predictSteps(*gpu, "pbf", 1.0e6, measuredWork("pbf", 1.0e6)).ms(),
@@ -198,7 +204,7 @@ constexpr const char* kErrorsHere = "## Error on the devices here";
 constexpr const char* kMeasuredOn = "Measured on: ";
 const std::vector<std::string> kRates = {"device",           "bandwidth, GB/s",       "arithmetic, 1e9/s",       "integers, 1e9/s",
                                          "roots, 1e9/s",     "loads, 1e9/s",          "rounds of a loop, 1e9/s", "dispatch, us",
-                                         "fragments, 1e9/s", "filtered reads, 1e9/s", "texels, 1e9/s",           "loads in step"};
+                                         "fragments, 1e9/s", "filtered reads, 1e9/s", "texels, 1e9/s",           "loads in lockstep"};
 // Each of their rows goes on with the prediction and its error; kResults with those calibrated, too.
 const std::vector<std::string> kResults = {"device", "method", "particles", "substeps", "iterations", "measured"};
 const std::vector<std::string> kPasses = {"device", "method", "pass", "measured"};
@@ -307,7 +313,31 @@ GpuSpec deviceIn(const DeviceTables& t, const std::string& backend) {
 
 constexpr const char* kCalibrates = "wcsph";  // its steps say which share of the rates a device reaches; the other methods show the error
 
-std::string errorsHere(const DeviceTables& t) {
+// The model of what was measured here, not calibrated.
+struct ModelHere {
+    std::map<std::string, FrameCost> costs;  // of a device and method, "gl pbf": of its substep, or picture
+    std::map<std::string, double> reached;   // of a device: predicted over measured time of kCalibrates
+    std::vector<double> errors;              // of simulated frames
+    const FrameCost& of(const Cells& row) const { return costs.find(row[0] + " " + row[1])->second; }
+};
+ModelHere modelOf(const DeviceTables& t) {
+    ModelHere model;
+    for (const Cells& row : t.results) {
+        const GpuSpec gpu = deviceIn(t, row[0]);
+        const double particles = numberIn(row[2]), substeps = numberIn(row[3]), measured = numberIn(row[5]);
+        const bool picture = row[1] == "picture";
+        FrameCost cost = picture ? predictPicture(gpu, particles) : predictSteps(gpu, row[1], particles, {substeps, numberIn(row[4])});
+        if (!picture) {
+            for (PassCost& pass : cost.passes) pass.ms /= substeps;
+            model.errors.push_back(errorOf(cost.ms(), measured));
+        }
+        if (row[1] == kCalibrates) model.reached[row[0]] = cost.ms() / measured;
+        model.costs[row[0] + " " + row[1]] = std::move(cost);
+    }
+    return model;
+}
+
+std::string errorsHere(const DeviceTables& t, const ModelHere& model) {
     const auto with = [](std::vector<std::string> columns, const char* predicted) {
         columns.insert(columns.end(), {predicted, "error"});
         return headOf(columns);
@@ -319,33 +349,22 @@ std::string errorsHere(const DeviceTables& t) {
         "predicted time over the measured one, less 1.\n\nThe first prediction follows from the rates and the counts; nothing is fitted. "
         "Real kernels reach a part of the rates of tiny ones. `{}` shows which part on each device: its predicted time over its measured "
         "time. The calibrated prediction is the first one divided by that part. It is made for the other methods; pictures are not "
-        "calibrated. Predictions for GPUs are not calibrated either.\n\nllvmpipe runs 8 threads in step, but each thread loads for "
-        "itself. Loads in step: the share of a load's time that it also takes in threads that do not load.\n\n{}{}\n\n{}",
+        "calibrated. Predictions for GPUs are not calibrated either.\n\nllvmpipe runs 8 threads in lockstep: all wait while one goes "
+        "through code that the others skip. But its loads take their time one thread after the other. Loads in lockstep: the share of a "
+        "load's time for which threads that do not load wait too.\n\n{}{}\n\n{}",
         kErrorsHere, kCalibrates, kMeasuredOn, t.machine, headOf(kRates));
     for (const Cells& row : t.rates) page += lineOf(row);
     std::vector<std::string> columns = kResults;
     columns.insert(columns.end(), {"predicted", "error"});
     page += "\n" + with(std::move(columns), "calibrated");
-    std::map<std::string, FrameCost> costs;  // of a device and method: of its substep, or picture
-    std::map<std::string, double> reached;   // of a device: predicted over measured time of kCalibrates
     for (const Cells& row : t.results) {
-        const GpuSpec gpu = deviceIn(t, row[0]);
-        const double particles = numberIn(row[2]), substeps = numberIn(row[3]);
-        FrameCost cost =
-            row[1] == "picture" ? predictPicture(gpu, particles) : predictSteps(gpu, row[1], particles, {substeps, numberIn(row[4])});
-        if (row[1] != "picture")
-            for (PassCost& pass : cost.passes) pass.ms /= substeps;
-        if (row[1] == kCalibrates) reached[row[0]] = cost.ms() / numberIn(row[5]);
-        costs[row[0] + " " + row[1]] = std::move(cost);
-    }
-    for (const Cells& row : t.results) {
-        const double measured = numberIn(row[5]), predicted = costs[row[0] + " " + row[1]].ms();
+        const double measured = numberIn(row[5]), predicted = model.of(row).ms();
         std::string line = lineOf(row);
         line.pop_back();
         line += predictedAndError(predicted, measured);
         line.pop_back();
-        const auto share = reached.find(row[0]);
-        const bool calibrated = row[1] != kCalibrates && row[1] != "picture" && share != reached.end();
+        const auto share = model.reached.find(row[0]);
+        const bool calibrated = row[1] != kCalibrates && row[1] != "picture" && share != model.reached.end();
         page += line + (calibrated ? predictedAndError(predicted / share->second, measured) : std::string(" | |\n"));
     }
     page +=
@@ -355,7 +374,7 @@ std::string errorsHere(const DeviceTables& t) {
     for (const Cells& row : t.passes) {
         std::string line = lineOf(row), rest = " | |\n";
         line.pop_back();
-        for (const PassCost& pass : costs[row[0] + " " + row[1]].passes)
+        for (const PassCost& pass : model.of(row).passes)
             if (pass.name == row[2]) rest = predictedAndError(pass.ms, numberIn(row[3]));
         page += line + rest;
     }
@@ -374,16 +393,23 @@ std::string errorsThere(const std::vector<GpuSpec>& gpus) {
                             c.predicted, percent(c.error()));
     page +=
         "\nPictures that an H200 drew, and their most expensive passes: dam_break with pbf, 1920x1080, quality fine, GPU time. They were "
-        "measured with the version of 2026-11-27; the predictions are for the passes of today. An H200 runs drawing shaders with 4 of its "
-        "132 SMs (column `draw_units` of `assets/gpus/gpus.csv`), so these figures say little about a GPU that is made to draw.\n\n" +
+        "measured with the version of 2026-11-27; the predictions are for the passes of today. An H200 runs drawing shaders with only 4 of "
+        "its 132 multiprocessors (column `draw_units` of `assets/gpus/gpus.csv`), so these figures say little about a GPU that is made to "
+        "draw.\n\n" +
         headOf({"GPU", "particles", "pass", "measured, ms", "predicted", "error"});
     for (const MeasuredPicture& c : pictures(gpus))
         page += fmt::format("| {} | {:.0f} | {} | {:.3g} |", c.gpu, c.particles, c.pass, c.measured) +
                 predictedAndError(c.predicted, c.measured);
-    page +=
-        "\nPasses with few operations are furthest off. Two copies of the picture, which compute nothing, took 3.5 ms there; the model "
-        "predicts 0.04. So such a GPU has a limit that the model lacks, and no published figure was found for it. Drawn frames of an H100 "
-        "(6 and 25 ms for 94,608 and 986,078 particles) are not compared: their pictures had 1280x720 pixels and went into a video.\n";
+    double copies = 0;
+    if (const GpuSpec* gpu = find(gpus, "H200"))
+        for (const PassCost& pass : predictPicture(*gpu, 16000).passes)
+            if (pass.name == "copy scene") copies = pass.ms;
+    page += fmt::format(
+        "\nPasses with few operations are furthest off. In a picture of quality fast there, the two copies of the picture, which compute "
+        "nothing, took 3.5 ms; the model predicts {:.1g}. So such a GPU has a limit that the model lacks, and no published figure was "
+        "found for it. Drawn frames of an H100 (6 and 25 ms for 94,608 and 986,078 particles) are not compared: their pictures had "
+        "1280x720 pixels and went into a video.\n",
+        copies);
     return page + "\n";
 }
 
@@ -405,11 +431,11 @@ std::string beforeAndAfter() {
         "bits and do not search again.\n\n"
         "The table compares both versions, counted in a world of 1,024 particles:\n\n"
         "- Operations: of one thread, the mean over all threads and all dispatches of a step.\n"
-        "- In step: a GPU runs 32 threads together, and each waits while others go through code that it skips. Operations of a "
-        "thread with these waits.\n"
+        "- In lockstep: a GPU runs 32 threads in lockstep, and each waits while others go through code that it skips. Operations of "
+        "a thread with these waits.\n"
         "- Longest thread: operations of the longest thread of a dispatch.\n\n"
         "[performance.md](performance.md#on-a-gpu) has the times on the devices here.\n\n" +
-        headOf({"kernel", "operations, before", "operations, after", "in step, before", "in step, after", "longest thread, before",
+        headOf({"kernel", "operations, before", "operations, after", "in lockstep, before", "in lockstep, after", "longest thread, before",
                 "longest thread, after"});
     for (const std::vector<std::string_view>& b : before.rows)
         for (const std::vector<std::string_view>& a : after.rows) {
@@ -442,12 +468,13 @@ std::string everyKernel(const std::vector<GpuSpec>& gpus) {
         "dispatches fill no GPU. The figures say what a work item of a kernel does. They do not say what a frame of a large scene "
         "takes.\n\n"
         "Work items, and operations of the longest thread: of one dispatch, means of all dispatches of the variant. Operations: of one "
-        "work item; in step: with waits, as in the table of pair loops. Bytes: of memory, of one work item, read and written; each sector "
+        "work item; in lockstep: with waits, as in the table of pair loops. Bytes: of memory, of one work item, read and written; each "
+        "sector "
         "of 32 bytes counts once a dispatch. (plain): counted without the compiler's optimisation, since Oclgrind does not know an "
         "intrinsic of optimised code there; these have more operations than a GPU runs. `assets/gpus/kernels_small.csv` has all columns, "
         "and the kernels of dam_break in these worlds too.\n\n",
         predicted.size(), others.size());
-    page += headOf({"kernel; variant", "work items", "operations", "in step", "bytes", "longest thread"});
+    page += headOf({"kernel; variant", "work items", "operations", "in lockstep", "bytes", "longest thread"});
     for (const CountedKernel& k : all)
         if (others.contains(k.name))
             page += fmt::format("| {} | {:.0f} | {} | {} | {} | {:.0f} |\n", nameOf(k), k.threads, threeDigits(k.operations()),
@@ -480,18 +507,19 @@ std::string everyKernel(const std::vector<GpuSpec>& gpus) {
 constexpr const char* kModel = R"(## The model
 
 Counted, on small worlds, by [tests/gpu_cost](../tests/gpu_cost/README.md): for each kernel operations by kind, loads and stores, the sectors of 32 bytes
-that a dispatch touches, the accesses of 32 threads together, the operations of groups of 8, 32 and 64 threads that go through the code in step, and
-those of the longest thread. For each drawing pass: invocations of its shaders, their reads of textures, bytes, and operations.
+that a dispatch touches, the accesses of 32 threads together, the operations of groups of 8, 32 and 64 threads in lockstep, and those of the longest
+thread. For each drawing pass: invocations of its shaders, their reads of textures, bytes, and operations.
 
 Kernels are counted with 1,024, 2,662 and 4,563 particles. For larger numbers the counts are extrapolated: a thread inside the water does other work than
 one at a wall or at the surface, and the share of those is proportional to 1 / (number of particles)^(1/3). Each count is fitted as a straight line over
-that quantity.
+that quantity. Dispatches that have no thread for each particle, but a fixed number of threads, or threads for cells: what they do is fitted as a
+straight line over the number of particles.
 
 A dispatch takes the time of a launch, and the longest of these:
 
 | limit | time |
 | --- | --- |
-| operations | threads x operations in step / (lanes x clock); a root or division counts as 8 operations, a branch as 2 |
+| operations | threads x operations in lockstep / (lanes x clock); a root or division counts as 8 operations, a branch as 2 |
 | cache | sectors of all accesses / (bytes that the first cache moves in a clock x clock) |
 | memory | bytes of all sectors that a dispatch touches, each counted once / bandwidth |
 | waits | operations and loads of all threads, each times its latency / threads that the GPU holds at once |
@@ -509,19 +537,19 @@ drawing pass takes the sum of its operations, written fragments, and filtered an
   and none that is made to draw was: the error of pictures there is not known.
 - The errors on the devices here were measured on one machine at one size, 8,192 particles. Other versions of Mesa and PoCL, and other sizes, were not
   compared. The part of the rates that real kernels reach depends on the processor. An earlier form of the model had no calibration and took all loads
-  in step: it was off by -29 % to -11 % on a processor with AVX-512, and by -47 % to +61 % on the one of this page, which has AVX2.
+  in lockstep: it was off by -29 % to -11 % on a processor with AVX-512, and by -47 % to +61 % on the one of this page, which has AVX2.
 - The clock is the boost clock, and nothing else runs on the GPU. A GPU that lowers its clock is slower in proportion.
 - Counts are of OpenCL C compiled by clang for Oclgrind; a driver's compiler may contract, unroll or spill otherwise.
 - No second cache: what misses the first is either in it or read once a dispatch.
-- Threads in step wait for each other at the end of each branch and loop; GPUs may let them run apart. The ratio of operations in step to operations
-  alone is that of the largest world counted, 4,563 particles. More of these are at walls than of a million: predictions for large worlds are too long by that.
+- Threads in lockstep wait for each other at the end of each branch and loop; GPUs may let them run apart. The ratio of operations in lockstep to
+  operations alone is that of the largest world counted, 4,563 particles. More of these are at walls than of a million: predictions for large worlds are too long by that.
 - Substeps and iterations are the cpu's, of the first frames of a dam break. An iteration that is queued and then skipped still costs a GPU its launches; they
   are not counted.
 - Operations of a fragment shader are those of its compiled text, each once, times the counted reads of textures over the reads in the text. Loops
-  that read no texture count once.
+  that read no texture count once. Of a pass that draws with several programs, the operations are those of the last program.
 - Occupancy (column `waves` of `kernels.csv`: the share of the threads that a GPU holds at once) is that of one GPU, NAVI21 (RX 6800), as Mesa's compiler
-  allots registers there. It stands for NVIDIA's and Intel's GPUs too, which have other register files and compilers. A variant that `tests/gpus` does not
-  compile has an empty cell, and is taken as full.
+  allots registers there; that GPU holds 16 waves of 32 threads on each SIMD. It stands for NVIDIA's and Intel's GPUs too, which have other register files and compilers. A variant that `tests/gpus` does not
+  compile has an empty cell, and is taken as full; so are the kernels that the H100 ran.
 - Latencies of AMD's and Intel's GPUs are estimates from measurements that others published; the vendors publish none.
 )";
 
@@ -531,6 +559,7 @@ Status writeGpuPage(const GpuModelRun& run, const std::string& folder, const std
     Result<DeviceTables> devices = run.gpus.empty() ? tablesIn(folder + "/gpus.md") : tablesOf(run);
     if (!devices) return devices.error();
     const std::vector<GpuSpec> gpus = publishedGpus();
+    const ModelHere here = modelOf(*devices);
     std::string csv = "gpu,method,particles,substeps,iterations,simulate_ms,draw_ms\n";
     for (const GpuSpec& gpu : gpus)
         for (const double particles : kParticles)
@@ -547,7 +576,8 @@ Status writeGpuPage(const GpuModelRun& run, const std::string& folder, const std
             "[gpus.csv](gpus.csv) has the predictions. "
             "`rivulet bench gpu` measures your GPU beside them.\n\n",
             command) +
-        predictions(gpus) + dominating(gpus) + beforeAndAfter() + errorsHere(*devices) + errorsThere(gpus) + kModel + everyKernel(gpus);
+        predictions(gpus, here.errors) + dominating(gpus) + beforeAndAfter() + errorsHere(*devices, here) + errorsThere(gpus) + kModel +
+        everyKernel(gpus);
     return writeFileAtomic(folder + "/gpus.md", page);
 }
 

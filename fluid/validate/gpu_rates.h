@@ -16,7 +16,7 @@ struct DeviceRates {
     double integer = 0;      // operations/s
     double special = 0;      // square roots/s
     double loads = 0;        // loads/s, from a few elements that every cache holds, all threads at once
-    double loadsInStep = 1;  // share of a load's time that a thread in step takes for a load of others: 1 on a GPU
+    double loadsInStep = 1;  // share of a load's time for which threads in lockstep that do not load wait too: 1 on a GPU
     double rounds = 0;       // rounds of a loop/s: its count, comparison and branch
     double dispatchMs = 0;   // ms of a dispatch of one work group
     double fragments = 0;    // fragments/s of a target of 16-bit floats, of a shader that does nothing; gl alone, otherwise 0

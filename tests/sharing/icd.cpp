@@ -1,7 +1,8 @@
 // An OpenCL driver for tests: PoCL with cl_khr_gl_sharing added, so that the path of drivers of GPUs runs where no GPU is. It transfers
 // contents through the host, and is strict: the side that does not own a buffer sees kPoison in it, OpenGL gets the contents when OpenCL's
-// event of the release is waited for, and a use that the extension does not allow ends the process with a sentence.
-// OCL_ICD_VENDORS names a file that names this library; POCL_ICD is the file that names PoCL's, /etc/OpenCL/vendors/pocl.icd by default.
+// event of the release is waited for, and a use that the extension does not allow, by a kernel, copy, read, write or fill, ends the process
+// with a sentence. OCL_ICD_VENDORS names a file that names this library; POCL_ICD is the file that names PoCL's,
+// /etc/OpenCL/vendors/pocl.icd by default.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl_icd.h>
 #include <EGL/egl.h>
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,8 +65,16 @@ struct Transfer {  // to OpenGL, of a release that nobody has waited for
     Bytes bytes;
 };
 cl_icd_dispatch pocl;  // its functions as they were
+std::mutex access;     // of the two maps: PoCL reports the end of an object on a thread of its own
 std::map<cl_mem, Shared> shared;
+std::map<cl_kernel, std::map<cl_uint, cl_mem>> arguments;  // buffers that kernels were given
 std::vector<Transfer*> transfers;
+
+Shared* find(cl_mem memory) {
+    const std::scoped_lock lock(access);
+    const auto found = shared.find(memory);
+    return found == shared.end() ? nullptr : &found->second;  // only the end of that object moves it
+}
 
 void transferWhatIsDone() {
     std::erase_if(transfers, [](Transfer* transfer) {
@@ -80,8 +90,8 @@ void transferWhatIsDone() {
 }
 
 void owned(cl_mem memory) {
-    const auto found = shared.find(memory);
-    require(found == shared.end() || found->second.acquired, "a command uses a buffer of OpenGL that is not acquired");
+    const Shared* found = find(memory);
+    require(found == nullptr || found->acquired, "a command uses a buffer of OpenGL that is not acquired");
 }
 
 void poison(cl_command_queue queue, cl_mem memory, size_t size) {
@@ -147,6 +157,7 @@ cl_int CL_API_CALL getGlContextInfo(const cl_context_properties* properties, cl_
 }
 
 void CL_CALLBACK gone(cl_mem memory, void*) {
+    const std::scoped_lock lock(access);
     const Shared& ends = shared.at(memory);
     require(!ends.acquired, "a buffer is released while it is acquired");
     if (eglGetCurrentContext() != EGL_NO_CONTEXT) require(isBuffer(ends.buffer), "OpenGL's buffer was deleted before OpenCL's object");
@@ -162,7 +173,10 @@ cl_mem CL_API_CALL wrap(cl_context context, cl_mem_flags flags, cl_GLuint buffer
     cl_mem memory =
         pocl.clCreateBuffer(context, flags | CL_MEM_COPY_HOST_PTR, bytes.size(), const_cast<unsigned char*>(bytes.data()), code);
     if (memory == nullptr) return nullptr;
-    shared[memory] = {buffer, bytes.size()};
+    {
+        const std::scoped_lock lock(access);
+        shared[memory] = {buffer, bytes.size()};
+    }
     pocl.clSetMemObjectDestructorCallback(memory, gone, nullptr);
     return memory;
 }
@@ -170,26 +184,26 @@ cl_mem CL_API_CALL wrap(cl_context context, cl_mem_flags flags, cl_GLuint buffer
 cl_int CL_API_CALL acquire(cl_command_queue queue, cl_uint count, const cl_mem* all, cl_uint, const cl_event*, cl_event* done) {
     contextIsCurrent();
     for (cl_uint k = 0; k < count; ++k) {
-        const auto found = shared.find(all[k]);
-        if (found == shared.end()) return CL_INVALID_GL_OBJECT;
-        require(!found->second.acquired, "a buffer is acquired twice");
-        found->second.acquired = true;
-        const Bytes bytes = fromGl(found->second.buffer, found->second.size);
+        Shared* found = find(all[k]);
+        if (found == nullptr) return CL_INVALID_GL_OBJECT;
+        require(!found->acquired, "a buffer is acquired twice");
+        found->acquired = true;
+        const Bytes bytes = fromGl(found->buffer, found->size);
         pocl.clEnqueueWriteBuffer(queue, all[k], CL_TRUE, 0, bytes.size(), bytes.data(), 0, nullptr, nullptr);
-        toGl(found->second.buffer, Bytes(bytes.size(), kPoison));
+        toGl(found->buffer, Bytes(bytes.size(), kPoison));
     }
     return done != nullptr ? pocl.clEnqueueMarkerWithWaitList(queue, 0, nullptr, done) : CL_SUCCESS;
 }
 
 cl_int CL_API_CALL release(cl_command_queue queue, cl_uint count, const cl_mem* all, cl_uint, const cl_event*, cl_event* done) {
     for (cl_uint k = 0; k < count; ++k) {
-        const auto found = shared.find(all[k]);
-        if (found == shared.end()) return CL_INVALID_GL_OBJECT;
-        require(found->second.acquired, "a buffer is released that is not acquired");
-        found->second.acquired = false;
-        auto* transfer = new Transfer{nullptr, found->second.buffer, Bytes(found->second.size)};
+        Shared* found = find(all[k]);
+        if (found == nullptr) return CL_INVALID_GL_OBJECT;
+        require(found->acquired, "a buffer is released that is not acquired");
+        found->acquired = false;
+        auto* transfer = new Transfer{nullptr, found->buffer, Bytes(found->size)};
         pocl.clEnqueueReadBuffer(queue, all[k], CL_FALSE, 0, transfer->bytes.size(), transfer->bytes.data(), 0, nullptr, &transfer->done);
-        poison(queue, all[k], found->second.size);
+        poison(queue, all[k], found->size);
         transfers.push_back(transfer);
     }
     if (ordersItself()) {
@@ -225,6 +239,33 @@ cl_int CL_API_CALL writeBuffer(cl_command_queue queue, cl_mem to, cl_bool blocki
     return pocl.clEnqueueWriteBuffer(queue, to, blocking, at, size, from, count, events, done);
 }
 
+cl_int CL_API_CALL fillBuffer(cl_command_queue queue, cl_mem to, const void* pattern, size_t patternSize, size_t at, size_t size,
+                              cl_uint count, const cl_event* events, cl_event* done) {
+    owned(to);
+    return pocl.clEnqueueFillBuffer(queue, to, pattern, patternSize, at, size, count, events, done);
+}
+
+cl_int CL_API_CALL setKernelArgument(cl_kernel kernel, cl_uint index, size_t size, const void* value) {
+    cl_mem memory = nullptr;
+    if (size == sizeof memory && value != nullptr) std::memcpy(static_cast<void*>(&memory), value, size);
+    const bool ofGl = memory != nullptr && find(memory) != nullptr;
+    const std::scoped_lock lock(access);
+    arguments[kernel].erase(index);
+    if (ofGl) arguments[kernel][index] = memory;
+    return pocl.clSetKernelArg(kernel, index, size, value);
+}
+
+cl_int CL_API_CALL runKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset, const size_t* global,
+                             const size_t* local, cl_uint count, const cl_event* events, cl_event* done) {
+    std::map<cl_uint, cl_mem> given;
+    {
+        const std::scoped_lock lock(access);
+        given = arguments[kernel];
+    }
+    for (const auto& [index, memory] : given) owned(memory);
+    return pocl.clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, count, events, done);
+}
+
 void* CL_API_CALL extensionFunction(cl_platform_id platform, const char* name) {
     if (std::string_view(name) == "clGetGLContextInfoKHR") return reinterpret_cast<void*>(getGlContextInfo);
     return pocl.clGetExtensionFunctionAddressForPlatform(platform, name);
@@ -248,6 +289,9 @@ void change(cl_icd_dispatch& table) {
     table.clEnqueueCopyBuffer = copyBuffer;
     table.clEnqueueReadBuffer = readBuffer;
     table.clEnqueueWriteBuffer = writeBuffer;
+    table.clEnqueueFillBuffer = fillBuffer;
+    table.clSetKernelArg = setKernelArgument;
+    table.clEnqueueNDRangeKernel = runKernel;
 }
 
 void* poclFunction(const char* name) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -163,7 +164,8 @@ class Findings {
     explicit Findings(Json::Value& checks) : checks_(checks) { checks_ = Json::Value(Json::arrayValue); }
     void add(const GpuFinding& f) {
         checks_.append(jsonOf(f));
-        agree_ = agree_ || f.passed();
+        OfDevice& of = of_[f.device];
+        (f.passed() ? of.agrees : f.error.empty() ? of.differs : of.fails) = true;
         if (f.passed()) return;
         const auto append = [](std::string& to, const std::string& text) { to += (to.empty() ? "" : "; ") + text; };
         append(f.error.empty() ? differences_ : failures_, f.sentence());
@@ -173,11 +175,14 @@ class Findings {
         add({.device = backendName(device.backend()), .what = what, .unit = {}, .error = error.message});
     }
     bool correct() const { return differences_.empty() && failures_.empty(); }
-    // Continues a sentence after a device's name. `all`: there was time for all comparisons.
-    const char* verdict(bool all) const {
-        if (!differences_.empty()) return "does not compute the same water as the cpu";
-        if (!agree_) return "could not be compared with the cpu";
-        if (!failures_.empty()) return "computes the same water as the cpu where it could be compared";
+    // Continues a sentence after the name of a device of backend `device`.
+    const char* verdict(const std::string& device, const LeftOut& out) const {
+        const auto found = of_.find(device);
+        const OfDevice of = found != of_.end() ? found->second : OfDevice();
+        if (of.differs) return "does not compute the same water as the cpu";
+        if (!of.agrees) return "could not be compared with the cpu";
+        if (of.fails) return "computes the same water as the cpu where it could be compared";
+        const bool all = std::ranges::none_of(out, [&](const std::string& what) { return what.starts_with(device + ": comparison"); });
         return all ? "computes the same water as the cpu" : "computes the same water as the cpu, as far as there was time to compare";
     }
     const std::string& failed() const { return failed_; }  // "cl: pbf; cl: rates"
@@ -190,8 +195,11 @@ class Findings {
     }
 
   private:
+    struct OfDevice {
+        bool agrees = false, differs = false, fails = false;
+    };
     Json::Value& checks_;
-    bool agree_ = false;
+    std::map<std::string, OfDevice> of_;
     std::string differences_, failures_, failed_;
 };
 
@@ -248,7 +256,7 @@ Result<Largest> runSeries(const BenchContext& context, const std::vector<Examine
     const double begun = hostSeconds(), share = kSeriesShare * context.seconds / static_cast<double>(gpus.size() * kGpuMethods.size());
     for (const ExaminedGpu& gpu : gpus)
         for (const char* method : kGpuMethods) {
-            SceneRenderer* draws = method == kGpuMethods[0] ? renderer : nullptr;
+            SceneRenderer* draws = gpu.device->backend() == Backend::gl && method == kGpuMethods[0] ? renderer : nullptr;
             const std::span<const int> sides =
                 gpu.device->info().software ? std::span<const int>(kSoftwareSides) : std::span<const int>(kSides);
             const char* device = backendName(gpu.device->backend());
@@ -279,8 +287,16 @@ Result<Largest> runSeries(const BenchContext& context, const std::vector<Examine
                 last = hostSeconds() - at;
                 before = side;
                 series.append(jsonOf(*row));
-                if (draws != nullptr && row->drawMs == 0)
-                    out.push_back(fmt::format("{}: a picture of {} particles", device, row->particles));
+                if (draws != nullptr && row->drawMs == 0) {
+                    const std::string picture = fmt::format("a picture of {} particles", row->particles);
+                    const bool memory = row->notDrawn && row->notDrawn->memory;
+                    if (row->notDrawn && !memory)
+                        findings.fail(*gpu.device, picture, *row->notDrawn);
+                    else
+                        out.push_back(fmt::format("{}: {}{}", device, picture, memory ? " (memory)" : ""));
+                    draws = row->notDrawn ? nullptr : draws;
+                    gpu.device->forgiveFull();
+                }
                 reportRow(context, *row);
                 if (Status saved = context.save(); !saved) return saved.error();
                 if (method == kGpuMethods[0] && (largest.gpu == nullptr || largest.gpu == &gpu)) largest = {&gpu, std::move(*row)};
@@ -354,7 +370,10 @@ Status benchGpu(const BenchContext& context) {
     if (Status compared = compare(context, devices, *scene, start + kChecksUntil * context.seconds, progress, findings, out); !compared)
         return compared;
     result["correct"] = findings.correct();
-    const char* verdict = findings.verdict(out.empty());
+    std::map<Backend, std::string> verdicts;
+    for (const std::unique_ptr<Device>& device : devices.list)
+        verdicts[device->backend()] = fmt::format("{} ({}) {}", devices.nameOf(*device), backendName(device->backend()),
+                                                  findings.verdict(backendName(device->backend()), out));
     if (Status saved = context.save(); !saved) return saved;
 
     const Result<std::vector<ExaminedGpu>> gpus = examineAll(context, devices, seriesUntil, progress, result["devices"], findings, out);
@@ -367,13 +386,16 @@ Status benchGpu(const BenchContext& context) {
         runSeries(context, *gpus, *scene, renderer ? renderer->get() : nullptr, seriesUntil, progress, result["series"], findings, out);
     if (!largest) return largest.error();
     const ExaminedGpu& named = largest->gpu != nullptr ? *largest->gpu : gpus->front();
-    std::string sentence = fmt::format("{} {}; ", named.name, verdict);
+    std::string sentence = verdicts[named.device->backend()] + "; ";
     sentence += largest->gpu == nullptr ? "no size was measured." : sentenceOf(largest->row);
     if (largest->gpu != nullptr) sentence += named.from.empty() ? "." : fmt::format(" (from {}).", named.from);
+    for (const auto& [backend, verdict] : verdicts)
+        if (backend != named.device->backend()) sentence += fmt::format(" {}.", verdict);
     if (!findings.failed().empty()) sentence += fmt::format(" Failed: {}.", findings.failed());
     result["leftOut"] = Json::Value(Json::arrayValue);
     for (const std::string& what : out) result["leftOut"].append(what);
     if (!out.empty()) sentence += fmt::format(" Left out after {:.0f} s: {}.", hostSeconds() - start, fmt::join(out, "; "));
+    result["correct"] = findings.correct();  // what failed since, too
     result["sentence"] = sentence;
     result["seconds"] = hostSeconds() - start;
     result["complete"] = true;
@@ -395,6 +417,11 @@ Status benchGpuModel(const BenchContext& context) {
     if (!renderer) return renderer.error();
     GpuModelRun run;
     for (const std::unique_ptr<Device>& device : devices.list) {
+        if (!device->info().software) {  // its model is by published figures
+            context.log.notice(fmt::format("{}: left out: {} is a GPU, which `rivulet bench gpu` compares with the model",
+                                           backendName(device->backend()), devices.nameOf(*device)));
+            continue;
+        }
         Result<ExaminedGpu> gpu = examineGpu(*device, devices.nameOf(*device));
         if (!gpu) return gpu.error();
         for (const char* method : kGpuMethods) {
@@ -408,6 +435,13 @@ Status benchGpuModel(const BenchContext& context) {
             run.rows.push_back(std::move(*row));
         }
         run.gpus.push_back(std::move(*gpu));
+    }
+    if (run.gpus.empty()) {
+        const std::string sentence =
+            "the case gpu_model needs OpenGL or OpenCL in software (Mesa's llvmpipe, PoCL), and this machine has neither";
+        if (context.named) return failed(sentence + ": install one of them");
+        context.log.notice(sentence + ": it is skipped");
+        return ok();
     }
     if (context.out.empty()) return ok();
     const Graceful whole;  // Ctrl-C waits for the files

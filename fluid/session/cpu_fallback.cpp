@@ -76,8 +76,9 @@ Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, cons
 Status stillWorks(const Device& device) {
     const DeviceHealth health = device.health();
     if (health.state == DeviceHealth::works) return ok();
-    return failed(fmt::format("{} on {} {}: its results are invalid; use --backend cpu, or fewer particles",
-                              device.backend() == Backend::gl ? "OpenGL" : "OpenCL", device.info().name, health.why));
+    std::string why = fmt::format("{} on {} {}: its results are invalid; use another backend, or fewer particles",
+                                  device.backend() == Backend::gl ? "OpenGL" : "OpenCL", device.info().name, health.why);
+    return health.state == DeviceHealth::full ? noMemory(std::move(why)) : failed(std::move(why));
 }
 
 }  // namespace rivulet

@@ -24,7 +24,8 @@ Result<OpenedSession> openSession(SceneFile scene, Device& device, const Log& lo
 // memory (failed), as FluidWorld::lastStep on the cpu; a recorded frame is damaged (badInput).
 Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, const Log& log);
 
-// For measurements, which must not continue on another device. Error (failed): the device has failed and its results are invalid.
+// For measurements, which must not continue on another device. Error: the device has failed and its results are invalid; out of memory
+// (Error::memory), or lost (failed).
 Status stillWorks(const Device& device);
 
 }  // namespace rivulet

@@ -146,10 +146,10 @@ Result<bool> checkWater(Device& device, Device& cpu, const char* name, const Flu
     if (!here) return here.error();
     if (!there) return there.error();
     const double fall = std::sqrt(2 * 9.81 * 1.0);
-    found.push_back({backendName(device.backend()), fmt::format("{}: positions after {} steps", name, kSteps), "spacings",
-                     farthest(here->position, there->position) / double{params.spacing}, kPositionLimit});
-    found.push_back({backendName(device.backend()), fmt::format("{}: velocities after {} steps", name, kSteps), "of a fall's speed",
-                     farthest(here->velocity, there->velocity) / fall, kSpeedLimit});
+    found.push_back({backendName(device.backend()), fmt::format("{}: largest difference of positions after {} steps", name, kSteps),
+                     "spacings", farthest(here->position, there->position) / double{params.spacing}, kPositionLimit});
+    found.push_back({backendName(device.backend()), fmt::format("{}: largest difference of velocities after {} steps", name, kSteps),
+                     "times the speed after a fall of 1 m", farthest(here->velocity, there->velocity) / fall, kSpeedLimit});
     return true;
 }
 
@@ -167,8 +167,9 @@ Result<bool> checkBodies(Device& device, Device& cpu, double until, std::vector<
         raise(aside, std::hypot(apart.x, apart.z) / double{kBox});
     }
     const char* name = backendName(device.backend());
-    found.push_back({name, "bodies in contact in water: heights at rest", "of a body", high, kHeightLimit});
-    found.push_back({name, "bodies in contact in water: places on the floor at rest", "of a body", aside, kLeanLimit});
+    found.push_back({name, "bodies in contact in water: largest difference of heights at rest", "times a body's edge", high, kHeightLimit});
+    found.push_back(
+        {name, "bodies in contact in water: largest difference of horizontal positions at rest", "times a body's edge", aside, kLeanLimit});
     return true;
 }
 
@@ -179,10 +180,10 @@ Result<bool> checkDrops(Device& device, Device& cpu, double until, std::vector<G
     const std::optional<Drops>&here = *expected, &there = *got;
     if (!here || !there) return false;
     const char* name = backendName(device.backend());
-    found.push_back({name, fmt::format("drops on a skin: their volume after {} steps", kRunning), "of it",
+    found.push_back({name, fmt::format("drops on a skin: difference of their volume after {} steps", kRunning), "of the cpu's volume",
                      std::abs(there->volume / here->volume - 1), kDropsLimit});
-    found.push_back({name, fmt::format("drops on a skin: their middle after {} steps", kRunning), "of the skin's radius",
-                     glm::length(there->middle - here->middle) / double{kSkinRadius}, kPlaceLimit});
+    found.push_back({name, fmt::format("drops on a skin: distance between their centres of mass after {} steps", kRunning),
+                     "times the skin's radius", glm::length(there->middle - here->middle) / double{kSkinRadius}, kPlaceLimit});
     return true;
 }
 
@@ -203,8 +204,7 @@ FluidParams oneStepDam(const char* method, float spacing) {
 
 std::string GpuFinding::sentence() const {
     if (!error.empty()) return fmt::format("{}: {}: {}", device, what, error);
-    return passed() ? fmt::format("{}: {} agree within {:.2g} {}", device, what, difference, unit)
-                    : fmt::format("{}: {} differ by {:.3g} {}, allowed are {:.2g}", device, what, difference, unit, limit);
+    return fmt::format("{}: {}: {:.3g} {}; at most {:.2g} is allowed", device, what, difference, unit, limit);
 }
 
 std::vector<GpuFinding> checkDevice(Device& device, Device& cpu, double until, std::vector<std::string>& leftOut) {
@@ -287,7 +287,7 @@ Result<GpuFinding> checkPicture(FluidWorld& world) {
         ++all;
         shown += change >= kChanged ? 1 : 0;
     }
-    return GpuFinding{"gl", "picture: pixels of the water that show none", "of all", all > 0 ? 1 - shown / all : 1, 0.1};
+    return GpuFinding{"gl", "picture: pixels that particles cover and that show no water", "of all", all > 0 ? 1 - shown / all : 1, 0.1};
 }
 
 }  // namespace rivulet

@@ -12,13 +12,13 @@ namespace rivulet {
 
 struct GpuFinding {
     std::string device;     // "gl"
-    std::string what;       // "pbf: positions after 10 steps"
+    std::string what;       // "pbf: largest difference of positions after 10 steps"
     std::string unit;       // "spacings"
-    double difference = 0;  // the largest over all particles
+    double difference = 0;  // in that unit
     double limit = 0;
     std::string error = {};                                               // why the device could not do it; empty: it could
     bool passed() const { return error.empty() && difference <= limit; }  // NaN does not pass
-    std::string sentence() const;  // "gl: pbf: positions after 10 steps differ from the cpu's by 3.1 spacings; ..."
+    std::string sentence() const;  // "gl: pbf: largest difference of positions after 10 steps: 3.1 spacings; at most 0.01 is allowed"
 };
 
 // A dam break with particles `spacing` m apart in which a frame of 1/1600 s is one step on every device, for any method.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/core/assert.h"
 #include "engine/core/timeline.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/cpu_fallback.h"
@@ -137,8 +138,13 @@ Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBrea
         row.predictedFrameMs = predictSteps(gpu.model, method, row.particles, work).ms();
         row.frameMs = row.predictedStepMs > 0 ? row.stepMs / row.predictedStepMs * row.predictedFrameMs : 0;
     }
-    if (renderer != nullptr && hostSeconds() < until)
-        if (Status drawn = drawSeries(gpu, world, *renderer, damBreak, until, row); !drawn) return drawn.error();
+    if (renderer == nullptr || hostSeconds() >= until) return row;
+    ASSERT(device.backend() == Backend::gl, "the clock and the model are of the device that draws");
+    if (Status drawn = drawSeries(gpu, world, *renderer, damBreak, until, row); !drawn) {
+        row.drawMs = 0;
+        row.drawPasses.clear();
+        row.notDrawn = drawn.error();
+    }
     return row;
 }
 

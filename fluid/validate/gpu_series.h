@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,7 +22,7 @@ struct ExaminedGpu {
     GpuSpec model = {};
     std::string from = {};  // "RTX 3060, by its name"; a device that is software: "its own measured rates"; empty: there is no model
 };
-// Threads that a device that is software runs in step: Mesa's llvmpipe ("gl") 8, vectors of 256 bits; PoCL ("cl") one after the other.
+// Threads that a device that is software runs in lockstep: Mesa's llvmpipe ("gl") 8, vectors of 256 bits; PoCL ("cl") one after the other.
 int threadsInStep(std::string_view backend);
 // `name`: of the renderer or the OpenCL device. As namedGpu() if hostSeconds() passes `until` before its rates are measured. Error: as
 // measureRates().
@@ -40,6 +41,7 @@ struct SeriesRow {
     double iterations = 0;                                                    // of the pressure solver, in a substep
     int warmSteps = 0;                                                        // before those that are measured: 8, if there is time
     double drawMs = 0, predictedDrawMs = 0;                                   // of a picture; 0: not drawn
+    std::optional<Error> notDrawn = {};                                       // why, if a picture was tried
     std::map<std::string, double> passes = {}, predictedPasses = {};          // of a substep: the least, scaled to stepMs if it is software
     std::map<std::string, double> drawPasses = {}, predictedDrawPasses = {};  // of a picture
 };
@@ -47,9 +49,9 @@ struct SeriesRow {
 int seriesParticles(int side);  // a column `side` particles wide and deep, twice as high
 FluidParams seriesWater(const SceneFile& damBreak, const char* method, int side);
 
-// Steps the column for `seconds` on the wall, and draws it with `renderer`, if it is not null. When hostSeconds() is past `until`, it ends
-// after the step or picture at hand: it has then measured one step at least, and no picture unless it had begun. Error: out of memory
-// (Error::memory), or the device failed.
+// Steps the column for `seconds` on the wall, and draws it with `renderer`, if it is not null; `gpu` must then be of gl, which draws. When
+// hostSeconds() is past `until`, it ends after the step or picture at hand: it has then measured one step at least, and no picture unless
+// it had begun. Error: out of memory (Error::memory), or the device failed. A picture that fails is no error: notDrawn.
 Result<SeriesRow> measureSeries(const ExaminedGpu& gpu, const SceneFile& damBreak, const char* method, int side, double seconds,
                                 SceneRenderer* renderer, double until = 1.0e300);
 

@@ -46,8 +46,10 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
     ASSERT_GT(gpu["devices"].size(), 0U);
     EXPECT_TRUE(gpu["complete"].asBool());
     EXPECT_EQ(gpu["leftOut"].size(), 0U);
-    // Per device: positions and velocities of each method and of one with forces, bodies in contact, drops on a skin.
-    EXPECT_GE(gpu["checks"].size(), 12 * gpu["devices"].size());
+    // Per device: positions and velocities of each method and of one with forces, bodies in contact, drops on a skin; and a picture.
+    size_t pictures = 0;
+    for (const Json::Value& device : gpu["devices"]) pictures += device["backend"] == "gl" ? 1 : 0;
+    EXPECT_EQ(gpu["checks"].size(), 12 * gpu["devices"].size() + pictures);
     for (const Json::Value& check : gpu["checks"]) {
         EXPECT_TRUE(check["pass"].asBool()) << check["what"].asString();
         EXPECT_LE(check["difference"].asDouble(), check["limit"].asDouble());
@@ -66,6 +68,8 @@ TEST(ProgramGpu, ComparesMeasuresAndPredicts) {
         for (const char* key : {"stepMs", "predictedStepMs", "frameMs", "predictedFrameMs", "particles"})
             EXPECT_GT(row[key].asDouble(), 0) << what << key;
         EXPECT_TRUE(row["passes"].isObject() && row["predictedPasses"].isObject()) << what;
+        const bool drawn = row["device"] == "gl" && row["method"] == "pbf";  // OpenGL draws, whatever simulates
+        for (const char* key : {"drawMs", "predictedDrawMs"}) EXPECT_EQ(row[key].asDouble() > 0, drawn) << what << key;
         // The model knows every kernel that takes a twentieth of the time.
         double whole = 0;
         for (const Json::Value& ms : row["passes"]) whole += ms.asDouble();
@@ -81,12 +85,12 @@ class Shaders {
         std::filesystem::create_directories(root_);
         std::filesystem::copy(RIVULET_SOURCE_DIR "/shaders", root_ / "shaders", std::filesystem::copy_options::recursive);
     }
-    void replace(const std::string& kernel, const std::string& right, const std::string& wrong) const {
-        const std::string path = (root_ / "shaders" / (kernel + ".kernel")).string();
+    void replace(const std::string& file, const std::string& right, const std::string& wrong) const {
+        const std::string path = (root_ / "shaders" / file).string();
         const Result<std::string> text = readFile(path);
         ASSERT_TRUE(text);
         const size_t at = text->find(right);
-        ASSERT_NE(at, std::string::npos) << kernel;
+        ASSERT_NE(at, std::string::npos) << file;
         std::ofstream(path) << std::string(*text).replace(at, right.size(), wrong);
     }
     RunOptions options() const {
@@ -99,19 +103,23 @@ class Shaders {
     std::filesystem::path root_;
 };
 
-// Methods stay right: what is found is where bodies and drops have come to.
-TEST(ProgramGpu, WrongContactsAndDropsAreFoundWhereWaterIsRight) {
+// Methods stay right: what is found is where bodies and drops have come to, and that a picture lacks the water.
+TEST(ProgramGpu, WrongContactsDropsAndPicturesAreFoundWhereWaterIsRight) {
     const Scratch scratch;
     const Shaders shaders(scratch);
-    shaders.replace("fluid/solids/advance_touching", "c.normal = vec4(n, massAlong(n, toA, toB, c.turnA.xyz, c.turnB.xyz, inverse));",
-                    "c.normal = vec4(n, 0.0f);");
-    shaders.replace("flow/walk", "w.v * PARAMS.dt);", "w.v * (1.5f * PARAMS.dt));");
+    shaders.replace("fluid/solids/advance_touching.kernel",
+                    "c.normal = vec4(n, massAlong(n, toA, toB, c.turnA.xyz, c.turnB.xyz, inverse));", "c.normal = vec4(n, 0.0f);");
+    shaders.replace("flow/walk.kernel", "w.v * PARAMS.dt);", "w.v * (1.5f * PARAMS.dt));");
+    shaders.replace("screen_space/depth.frag", "void main() {", "void main() {\n    if (gl_FragCoord.x > 0.0) discard;");
     const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900"}, shaders.options());
     if (absent(outcome)) GTEST_SKIP() << outcome.err;
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_NE(outcome.err.find("bodies in contact in water: heights at rest differ by"), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find("drops on a skin: their middle after 30 steps differ by"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("bodies in contact in water: largest difference of heights at rest: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("drops on a skin: distance between their centres of mass after 30 steps: "), std::string::npos)
+        << outcome.err;
     EXPECT_EQ(outcome.err.find("positions after"), std::string::npos) << outcome.err;
+    if (outcome.out.find("(gl) does not compute") != std::string::npos)
+        EXPECT_NE(outcome.err.find("gl: picture: pixels that particles cover and that show no water: "), std::string::npos) << outcome.err;
 }
 
 TEST(ProgramGpu, EndsInTimeAndNamesWhatIsLeftOut) {
@@ -171,13 +179,13 @@ TEST(ProgramGpu, AnInterruptedRunLeavesWhatItKnows) {
 TEST(ProgramGpu, AWrongKernelIsNamedAndEndsWithOne) {
     const Scratch scratch;
     const Shaders shaders(scratch);
-    shaders.replace("fluid/methods/pbf_shift", "real3 x = xi - sum * LIGHTNESS;", "real3 x = xi + sum * LIGHTNESS;");
+    shaders.replace("fluid/methods/pbf_shift.kernel", "real3 x = xi - sum * LIGHTNESS;", "real3 x = xi + sum * LIGHTNESS;");
     const std::string json = (scratch.path() / "gpu.json").string();
     const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900", "--json", json}, shaders.options());
     if (absent(outcome)) GTEST_SKIP() << outcome.err;
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_NE(outcome.err.find("pbf: positions after 10 steps differ by"), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.err.find("wcsph: positions"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("pbf: largest difference of positions after 10 steps: "), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("wcsph: largest"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.out.find("does not compute the same water as the cpu"), std::string::npos) << outcome.out;
     const Json::Value all = readJson(json);  // it is written nevertheless: a person sends it
     EXPECT_FALSE(all["gpu"]["correct"].asBool());
@@ -191,7 +199,7 @@ TEST(ProgramGpu, ADeviceThatFailsIsNamedAndTheOtherIsMeasured) {
         SCOPED_TRACE(broken);
         const Scratch scratch;
         const Shaders shaders(scratch);
-        for (const char* kernel : {"fluid/methods/wcsph_density", "bench/rate_copy"})
+        for (const char* kernel : {"fluid/methods/wcsph_density.kernel", "bench/rate_copy.kernel"})
             shaders.replace(kernel, "KERNEL(", fmt::format("#ifdef {}\n#error planted\n#endif\nKERNEL(", macro));
         const std::string json = (scratch.path() / "gpu.json").string();
         const Outcome outcome = runProgram({"bench", "gpu", "--seconds", "12", "--json", json}, shaders.options());
@@ -203,7 +211,11 @@ TEST(ProgramGpu, ADeviceThatFailsIsNamedAndTheOtherIsMeasured) {
         EXPECT_EQ(outcome.code, 1) << outcome.err;
         EXPECT_NE(outcome.err.find(fmt::format("a device failed: {}: wcsph: ", broken)), std::string::npos) << outcome.err;
         EXPECT_EQ(outcome.err.find("differs"), std::string::npos) << outcome.err;
-        EXPECT_NE(outcome.out.find("computes the same water as the cpu where it could be compared; "), std::string::npos) << outcome.out;
+        // Each device has a verdict of its own.
+        const std::string same = "computes the same water as the cpu", other = broken == std::string("gl") ? "cl" : "gl";
+        EXPECT_NE(outcome.out.find(fmt::format("({}) {} where it could be compared", broken, same)), std::string::npos) << outcome.out;
+        EXPECT_NE(outcome.out.find(fmt::format("({}) {}", other, same)), std::string::npos) << outcome.out;
+        EXPECT_EQ(outcome.out.find(fmt::format("({}) {} where it", other, same)), std::string::npos) << outcome.out;
         EXPECT_NE(outcome.out.find(fmt::format("Failed: {}: wcsph", broken)), std::string::npos) << outcome.out;
         EXPECT_TRUE(gpu["complete"].asBool());
         EXPECT_FALSE(gpu["correct"].asBool());
@@ -220,8 +232,32 @@ TEST(ProgramGpu, ADeviceThatFailsIsNamedAndTheOtherIsMeasured) {
         for (const Json::Value& check : gpu["checks"]) ++(check["pass"].asBool() ? passed : failed)[check["device"].asString()];
         for (const auto& [device, count] : failed) EXPECT_EQ(device, broken) << count;
         EXPECT_GE(failed[broken], late(broken) ? 1 : 2) << "wcsph and rates";
-        EXPECT_GE(passed[broken == std::string("gl") ? "cl" : "gl"], 2) << "positions and velocities of wcsph at least";
+        EXPECT_GE(passed[other], 2) << "positions and velocities of wcsph at least";
     }
+}
+
+// What was measured of a device stays, if it cannot draw.
+TEST(ProgramGpu, APictureThatFailsLeavesTheStepsMeasured) {
+    const Scratch scratch;
+    const Shaders shaders(scratch);
+    shaders.replace("screen_space/shade.frag", "void main() {", "#error planted\nvoid main() {");
+    const std::string json = (scratch.path() / "gpu.json").string();
+    const Outcome outcome = runProgram({"bench", "gpu", "--quick", "--seconds", "900", "--json", json}, shaders.options());
+    const Json::Value gpu = readJson(json)["gpu"];
+    if (gpu["devices"].empty() || gpu["devices"][0]["backend"] != "gl") {
+        EXPECT_EQ(std::getenv("RIVULET_TEST_DEVICES"), nullptr) << outcome.err;
+        GTEST_SKIP() << outcome.err;
+    }
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("gl: picture: "), std::string::npos) << outcome.err;
+    EXPECT_EQ(gpu["series"].size(), 3U) << outcome.err;
+    for (const Json::Value& row : gpu["series"]) {
+        EXPECT_GT(row["stepMs"].asDouble(), 0);
+        EXPECT_FALSE(row.isMember("drawMs"));
+    }
+    EXPECT_NE(outcome.out.find("(gl) computes the same water as the cpu where it could be compared; 1024 particles take"),
+              std::string::npos)
+        << outcome.out;
 }
 
 TEST(ProgramGpu, AnAbsentDeviceIsNamedWithTheReason) {

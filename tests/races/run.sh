@@ -74,7 +74,7 @@ suite_zink() {
     draw_on_llvmpipe || status=1
     on_zink env RIVULET_PICTURES_LIKE="$work/pictures" "$tests" --gtest_filter="$gl_tests" >"$work/zink.log" 2>&1 || status=1
     on_zink "$parity" --gtest_filter="$gl_tests" >>"$work/zink.log" 2>&1 || status=1
-    grep -E 'FAILED|kernels in|^pictures?[: ]|tests ran|RIVULET_EXPECT' "$work/zink.log" | sort -u
+    grep -E 'FAILED|kernels in|^pictures?[: ]|tests? from .* ran|RIVULET_EXPECT' "$work/zink.log" | sort -u
     said "zink on $(basename "$icd" .json)" $status
 }
 suite_validation() {
@@ -113,7 +113,7 @@ suite_swiftshader() {
 suite_orders() {
     "$tests" --gtest_filter='*Orders*:*WorkGroups*:*NanHabits*:*SmallWorlds*gl' >"$work/orders.log" 2>&1
     local status=$?
-    grep -E 'FAILED|kernels in|tests ran' "$work/orders.log"
+    grep -E 'FAILED|kernels in|tests? from .* ran' "$work/orders.log"
     said orders $status
 }
 suite_subgroups() {
@@ -126,7 +126,7 @@ suite_subgroups() {
         "${on[@]}" "$tests" --gtest_filter='*WorkGroups*gl*' >"$work/subgroups.log" 2>&1 || status=1
         "${on[@]}" "$parity" --gtest_filter="$against" >>"$work/subgroups.log" 2>&1 || status=1
         echo "$lanes lanes"
-        grep -E 'FAILED|tests ran|test ran|RIVULET_EXPECT' "$work/subgroups.log" | sort -u
+        grep -E 'FAILED|tests? from .* ran|RIVULET_EXPECT' "$work/subgroups.log" | sort -u
     done
     said subgroups $status
 }

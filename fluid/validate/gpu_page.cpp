@@ -535,9 +535,9 @@ drawing pass takes the sum of its operations, written fragments, and filtered an
 
 - Simulated frames were compared with one GPU, an H100, and pictures with one, an H200 ([Against a GPU](#against-a-gpu)). All others are not tested,
   and none that is made to draw was: the error of pictures there is not known.
-- The errors on the devices here were measured on one machine at one size, 8,192 particles. Other versions of Mesa and PoCL, and other sizes, were not
-  compared. The part of the rates that real kernels reach depends on the processor. An earlier form of the model had no calibration and took all loads
-  in lockstep: it was off by -29 % to -11 % on a processor with AVX-512, and by -47 % to +61 % on the one of this page, which has AVX2.
+- The errors on the devices here were measured on one machine, whose processor has AVX2, at one size, 8,192 particles. Other versions of Mesa and PoCL,
+  and other sizes, were not compared. The part of the rates that real kernels reach depends on the processor. Two runs on a machine whose processor has
+  AVX-512 (2026-11-29) were off by -42 % to -24 % (`gl`) and -18 % to -12 % (`cl`), calibrated by -23 % to -5 %, and the pictures by -24 % and -32 %.
 - The clock is the boost clock, and nothing else runs on the GPU. A GPU that lowers its clock is slower in proportion.
 - Counts are of OpenCL C compiled by clang for Oclgrind; a driver's compiler may contract, unroll or spill otherwise.
 - No second cache: what misses the first is either in it or read once a dispatch.

@@ -318,7 +318,11 @@ struct ModelHere {
     std::map<std::string, FrameCost> costs;  // of a device and method, "gl pbf": of its substep, or picture
     std::map<std::string, double> reached;   // of a device: predicted over measured time of kCalibrates
     std::vector<double> errors;              // of simulated frames
-    const FrameCost& of(const Cells& row) const { return costs.find(row[0] + " " + row[1])->second; }
+    // Nothing for a row of a pass whose frame an edited page lacks.
+    FrameCost of(const Cells& row) const {
+        const auto found = costs.find(row[0] + " " + row[1]);
+        return found == costs.end() ? FrameCost() : found->second;
+    }
 };
 ModelHere modelOf(const DeviceTables& t) {
     ModelHere model;
@@ -374,7 +378,8 @@ std::string errorsHere(const DeviceTables& t, const ModelHere& model) {
     for (const Cells& row : t.passes) {
         std::string line = lineOf(row), rest = " | |\n";
         line.pop_back();
-        for (const PassCost& pass : model.of(row).passes)
+        const FrameCost cost = model.of(row);
+        for (const PassCost& pass : cost.passes)
             if (pass.name == row[2]) rest = predictedAndError(pass.ms, numberIn(row[3]));
         page += line + rest;
     }

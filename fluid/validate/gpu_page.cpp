@@ -125,8 +125,7 @@ std::string offBy(const std::vector<GpuSpec>& gpus, const std::vector<double>& h
     if (drawer != nullptr)
         off += fmt::format(
             " Pictures were measured on an {} alone, which draws with only {:.0f} of its {:.0f} multiprocessors: pictures predicted to "
-            "take "
-            "{} ms took {} ms.",
+            "take {} ms took {} ms.",
             drawer->name, drawer->drawUnits, drawer->units, listOf(predicted), listOf(measured));
     off += " See [Against a GPU](#against-a-gpu).";
     if (here.empty()) return off;
@@ -517,8 +516,8 @@ thread. For each drawing pass: invocations of its shaders, their reads of textur
 
 Kernels are counted with 1,024, 2,662 and 4,563 particles. For larger numbers the counts are extrapolated: a thread inside the water does other work than
 one at a wall or at the surface, and the share of those is proportional to 1 / (number of particles)^(1/3). Each count is fitted as a straight line over
-that quantity. Dispatches that have no thread for each particle, but a fixed number of threads, or threads for cells: what they do is fitted as a
-straight line over the number of particles.
+that quantity. Some dispatches do not have one thread for each particle: their number of threads is fixed, or is that of cells. A fixed number of threads
+has more to do for more particles, and the number of cells grows with them: both are fitted as a straight line over the number of particles.
 
 A dispatch takes the time of a launch, and the longest of these:
 
@@ -540,21 +539,25 @@ drawing pass takes the sum of its operations, written fragments, and filtered an
 
 - Simulated frames were compared with one GPU, an H100, and pictures with one, an H200 ([Against a GPU](#against-a-gpu)). All others are not tested,
   and none that is made to draw was: the error of pictures there is not known.
-- The errors on the devices here were measured on one machine, whose processor has AVX2, at one size, 8,192 particles. Other versions of Mesa and PoCL,
-  and other sizes, were not compared. The part of the rates that real kernels reach depends on the processor. Two runs on a machine whose processor has
-  AVX-512 (2026-11-29) were off by -42 % to -24 % (`gl`) and -18 % to -12 % (`cl`), calibrated by -23 % to -5 %, and the pictures by -24 % and -32 %.
+- The errors in [Error on the devices here](#error-on-the-devices-here) come from one machine. Its processor has AVX2, and all runs had 8,192 particles.
+  Other numbers of particles, and other versions of Mesa and PoCL, were not compared.
+- The errors depend on the processor. On 2026-11-29 a machine with AVX-512 was measured twice. Without calibration, the predicted times of simulated
+  frames were too short by 24 % to 42 % on llvmpipe and by 12 % to 18 % on PoCL. With calibration they were too short by 5 % to 23 %. The predicted times
+  of the two pictures, which are not calibrated, were too short by 24 % and 32 %.
 - The clock is the boost clock, and nothing else runs on the GPU. A GPU that lowers its clock is slower in proportion.
 - Counts are of OpenCL C compiled by clang for Oclgrind; a driver's compiler may contract, unroll or spill otherwise.
 - No second cache: what misses the first is either in it or read once a dispatch.
 - Threads in lockstep wait for each other at the end of each branch and loop; GPUs may let them run apart. The ratio of operations in lockstep to
-  operations alone is that of the largest world counted, 4,563 particles. More of these are at walls than of a million: predictions for large worlds are too long by that.
+  operations alone is that of the largest world counted, 4,563 particles. More of these are at walls than of a million: predictions for large worlds are
+  too long by that.
 - Substeps and iterations are the cpu's, of the first frames of a dam break. An iteration that is queued and then skipped still costs a GPU its launches; they
   are not counted.
 - Operations of a fragment shader are those of its compiled text, each once, times the counted reads of textures over the reads in the text. Loops
   that read no texture count once. Of a pass that draws with several programs, the operations are those of the last program.
 - Occupancy (column `waves` of `kernels.csv`: the share of the threads that a GPU holds at once) is that of one GPU, NAVI21 (RX 6800), as Mesa's compiler
-  allots registers there; that GPU holds 16 waves of 32 threads on each SIMD. It stands for NVIDIA's and Intel's GPUs too, which have other register files and compilers. A variant that `tests/gpus` does not
-  compile has an empty cell, and is taken as full; so are the kernels that the H100 ran.
+  allots registers there; that GPU holds 16 waves of 32 threads on each SIMD. It stands for NVIDIA's and Intel's GPUs too, which have other register files
+  and compilers. A variant that `tests/gpus` does not compile has an empty cell, and its occupancy is taken as full. The same holds for the kernels that
+  the H100 ran.
 - Latencies of AMD's and Intel's GPUs are estimates from measurements that others published; the vendors publish none.
 )";
 
